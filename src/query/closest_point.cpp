@@ -20,7 +20,7 @@ std::optional<ClosestPoint> closest_point(const Shape& shape, const Pose& pose, 
     // As far as rounding puts the point off; where it is far away, that is what decides which boxes are near.
     const double slack = rounding_of(mesh) + 1e-14 * (length(sought) + length(mesh.centre));
     const double float_rounding = float_rounding_of(mesh.reach + length(sought));
-    double nearest2 = max * max;
+    double nearest2 = max * max * (1 + 1e-12); // what is there exactly is found; `max` decides at the end
     std::uint32_t face = NONE;
     Vec3 nearest;
     const auto farthest = [&] {

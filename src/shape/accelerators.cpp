@@ -3,9 +3,29 @@
 
 #include "executor/float_environment.h"
 #include "mesh/check.h"
+#include "platform/system.h"
 #include "shape/build.h"
 
 namespace raycontact {
+
+namespace {
+
+/// Gives the turn to make them back, also where that fails.
+class Turn {
+public:
+    explicit Turn(std::atomic<std::uint64_t>& maker) : maker_(maker) {}
+    ~Turn() {
+        maker_ = 0;
+        maker_.notify_all();
+    }
+    Turn(const Turn&) = delete;
+    Turn& operator=(const Turn&) = delete;
+
+private:
+    std::atomic<std::uint64_t>& maker_;
+};
+
+} // namespace
 
 std::uint64_t Accelerators::bytes() const {
     const auto bytes = [](const auto& list) { return list.capacity() * sizeof(list[0]); };
@@ -32,12 +52,20 @@ std::unique_ptr<const Accelerators> build_accelerators(const ShapeData& shape, E
 }
 
 bool AcceleratorSlot::make(const ShapeData& shape, Executor& executor, const std::stop_token& stop) {
-    if (get() != nullptr) return true;
-    const std::lock_guard lock(making_);
-    if (get() != nullptr) return true;
-    made_ = build_accelerators(shape, executor, stop);
-    ready_.store(made_.get(), std::memory_order_release);
-    return made_ != nullptr;
+    const std::uint64_t here = platform::process_id();
+    for (std::uint64_t maker = 0; get() == nullptr;) {
+        if (maker == here) {
+            maker_.wait(here);
+            maker = maker_;
+        } else if (maker_.compare_exchange_strong(maker, here)) {
+            const Turn turn(maker_);
+            if (get() != nullptr) return true; // another thread's turn was just before
+            made_ = build_accelerators(shape, executor, stop);
+            ready_.store(made_.get(), std::memory_order_release);
+            return made_ != nullptr;
+        }
+    }
+    return true;
 }
 
 const Accelerators* accelerators_of(const Shape& shape) {

@@ -6,8 +6,8 @@
 #include "shape/supports.h"
 
 #include <atomic>
+#include <cstdint>
 #include <memory>
-#include <mutex>
 #include <stop_token>
 #include <vector>
 
@@ -38,7 +38,8 @@ public:
     bool make(const ShapeData& shape, Executor& executor, const std::stop_token& stop);
 
 private:
-    std::mutex making_;
+    /// The process in which a thread is at it; 0: none. A forked child has its parent's number here and no such thread.
+    std::atomic<std::uint64_t> maker_{0};
     std::unique_ptr<const Accelerators> made_;
     std::atomic<const Accelerators*> ready_{nullptr};
 };

@@ -64,8 +64,9 @@ def test_progress_is_told_and_may_end_the_search():
 
 def test_a_part_that_cannot_be_checked_is_named():
     flat = rc.Mesh([[0, 0, 0], [1, 0, 0], [2, 0, 0]], [[0, 1, 2]])
-    found = rc.clash([*row(0, 0.5), ("flat", flat, None)])
-    assert list(found.faults) == ["flat"] and "area" in found.faults["flat"] and len(found) == 1
+    found = rc.clash([*row(0, 0.5), ("flat", flat, None), ("flat", flat, None)])
+    assert [(one.part, one.name) for one in found.faults] == [(2, "flat"), (3, "flat")] and len(found) == 1
+    assert all("area" in one.why for one in found.faults) and "not checked: flat, flat" in str(found)
     sheet = rc.Mesh([[-1, -1, 0], [1, -1, 0], [0, 1, 0]], [[0, 1, 2]])
     opened = rc.clash([*row(0), ("sheet", sheet, None)])
     assert opened.open == ["sheet"] and len(opened) == 1

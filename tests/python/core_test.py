@@ -3,6 +3,7 @@
 
 import collections
 import copy
+import fractions
 import json
 import os
 import pickle
@@ -578,6 +579,7 @@ def test_what_is_given_may_be_changed_by_others_meanwhile(torus):
         for _ in range(5):
             try:
                 assert rc.contains(torus, points).all()
+                assert len(rc.collide(torus, torus, pose_b=rc.pose(points[:500]))) >= 0
             except rc.InputError as error:
                 assert "finite" in str(error)
     finally:
@@ -679,3 +681,67 @@ def test_poses_that_are_no_poses_are_named_as_they_were_given(torus):
 def test_rotations_of_scipy_are_taken():
     rotation = pytest.importorskip("scipy.spatial.transform").Rotation.from_euler("z", 90, degrees=True)
     assert np.allclose(rc.pose([1, 2, 3], rotation), rc.pose_from_quaternion([1, 2, 3], [1, 0, 0, 1]))
+
+
+def test_a_closest_point_at_the_greatest_distance_counts(torus):
+    points = RNG.normal(size=(3000, 3)) * 3
+    pose = random_poses(1, 5)[0]
+    far = rc.closest_point(torus, points, pose).distance
+    again = [rc.closest_point(torus, point, pose, max=most).distance for point, most in zip(points, far)]
+    assert np.array_equal(again, far)
+
+
+def test_adding_nothing_or_too_little_is_told(torus):
+    scene = rc.Scene()
+    for shapes, poses in (([], np.zeros((3, 4, 4)) + np.eye(4)), ([torus] * 2, []), ([torus] * 2, [np.eye(4)] * 3)):
+        with pytest.raises(rc.InputError, match="shapes for"):
+            scene.add(shapes, poses)
+    with pytest.raises(rc.InputError, match=r"poses\[2\]"):
+        scene.add(torus, [np.eye(4), np.eye(4), np.diag([2, 2, 2, 1])])
+    assert scene.add(torus) == 0, "what failed used no ids"
+    assert scene.add([torus, torus], np.eye(4)[None]).tolist() == [1, 2]
+
+
+def test_small_mistakes_are_told(torus, tmp_path):
+    with pytest.raises(rc.InputError, match="speculative=True"):
+        rc.Scene(speculative_margin=0.1)
+    with pytest.raises(rc.InputError, match="1025"):
+        rc.intersects(torus, torus, threads=1025)
+    contacts = rc.collide(torus, torus, pose_b=rc.pose([1, 0, 0]))
+    with pytest.raises(TypeError, match="contacts.depth"):
+        contacts["depth"]
+    assert rc.Shape(rc.Mesh(*meshes.box()), scale=fractions.Fraction(1, 2)).box[1].tolist() == [0.25] * 3
+    scene, _ = ring_scene(torus)
+    with rc.Recorder(tmp_path / "a.glb", scene) as recorder:
+        scene.find_contacts()
+        recorder.record()
+        recorder.finish()
+
+
+@pytest.mark.parametrize(
+    "work",
+    [
+        "rc.distance(shape, shape, pose_b=poses)",
+        "scene.find_contacts()",
+        "rc.Shape(mesh)",
+        "rc.raycast(shape, points, [1, 0, 0])",
+        "rc.clash([('a', mesh, None), ('b', mesh, None)])",
+    ],
+)
+def test_a_program_ends_while_daemon_threads_compute(work):
+    program = run_python(
+        "import threading, time, meshes, numpy as np, raycontact as rc\n"
+        "mesh = rc.Mesh(*meshes.torus(around=96, across=48))\n"
+        "shape, scene = rc.Shape(mesh), rc.Scene()\n"
+        "points = np.random.default_rng(1).uniform(-2, 2, (20_000, 3))\n"
+        "poses = rc.pose(points + [5, 0, 0])\n"
+        "scene.add(shape, poses[:40])\n"
+        "def loop():\n"
+        f"    while True: {work}\n"
+        "threads = [threading.Thread(target=loop, daemon=True)]\n"
+        "threads[0].start()\n"
+        "time.sleep(0.2)\n"
+        "print('end', flush=True)\n"
+    )
+    out, err = program.communicate(timeout=600)
+    assert (program.returncode, out) == (0, "end\n"), err

@@ -52,8 +52,8 @@ def _clash(options: argparse.Namespace) -> int:
     found = rc.clash(
         options.files, scale=options.scale, ignore_touching=options.ignore_touching, progress=sys.stderr.isatty()
     )
-    for name, why in found.faults.items():
-        print(f"not checked: {name}: {why}", file=sys.stderr)
+    for fault in found.faults:
+        print(f"not checked: {fault.name}: {fault.why}", file=sys.stderr)
     if options.json:
         for one in found:
             normal = None if one.normal is None else one.normal.tolist()

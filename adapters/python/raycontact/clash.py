@@ -42,17 +42,30 @@ class Clash(NamedTuple):
     index_b: int
 
 
+class Fault(NamedTuple):
+    """A part that could not be checked.
+
+    part: its place in the list of parts.
+    name: of the part.
+    why: in words.
+    """
+
+    part: int
+    name: str
+    why: str
+
+
 class Clashes(Sequence[Clash]):
     """Clashes, the deepest first, then those without a depth, then those that touch."""
 
-    def __init__(self, clashes: list[Clash], parts: list[str], pairs: int, faults: dict[str, str], open: list[str]):
+    def __init__(self, clashes: list[Clash], parts: list[str], pairs: int, faults: list[Fault], open: list[str]):
         self._clashes = clashes
         self.parts = parts
         """Names of all parts."""
         self.pairs = pairs
         """How many pairs of boxes touch; only these can clash."""
         self.faults = faults
-        """Parts that could not be checked, and why."""
+        """Parts that could not be checked."""
         self.open = open
         """Parts that are not closed, so that nothing is inside them."""
 
@@ -80,7 +93,7 @@ class Clashes(Sequence[Clash]):
         if self.open:
             lines.append(f"open, so that nothing is inside: {_some(self.open)}")
         if self.faults:
-            lines.append(f"not checked: {_some(list(self.faults))}")
+            lines.append(f"not checked: {_some([fault.name for fault in self.faults])}")
         return "\n".join(lines)
 
 
@@ -122,7 +135,7 @@ def clash(
     if ignore_touching is not None:
         most = as_length(ignore_touching, "ignore_touching") * (1 + 1e-6)  # depths are float32
         clashes = [one for one in clashes if one.depth is None or one.depth > most]
-    return Clashes(clashes, names, pairs, {names[i]: why for i, why in faults}, [names[i] for i in opened])
+    return Clashes(clashes, names, pairs, [Fault(i, names[i], why) for i, why in faults], [names[i] for i in opened])
 
 
 def _parts_of(assembly: Any) -> list[tuple[str, _core.Mesh, NDArray[np.float64]]]:
@@ -173,4 +186,4 @@ class _Bar:
             self._bar.close()
 
 
-__all__ = ["Clash", "Clashes", "clash"]
+__all__ = ["Clash", "Clashes", "Fault", "clash"]

@@ -50,7 +50,8 @@ class Contacts:
 
     Columns show the memory that the library wrote, without a copy, and keep it: they stay valid and unchanged when the
     scene steps on or is gone. They are arrays with strides; what needs contiguous memory copies
-    (`np.ascontiguousarray`), DLPack takes them as they are (`torch.from_dlpack(contacts.depth)`).
+    (`np.ascontiguousarray`). They are read-only, which not all that take arrays by DLPack know: give them a `.copy()`
+    (`torch.from_dlpack(contacts.depth.copy())`).
 
     `contacts[mask]` and `contacts[i:j]` choose some; iterating gives a record of CONTACT_DTYPE for each contact.
 
@@ -165,6 +166,8 @@ class Contacts:
         return len(self.data)
 
     def __getitem__(self: _Self, which: _Index) -> _Self:
+        if isinstance(which, str):
+            raise TypeError(f"contacts[{which!r}]: columns are attributes: contacts.{which}")
         chosen = self.data[which]
         return type(self)(chosen if chosen.ndim else chosen.reshape(1))
 

@@ -137,8 +137,9 @@ def _make(vertices: ArrayLike, triangles: ArrayLike, scale: float, name: str) ->
         row = int(np.argmax(((corners < 0) | (corners > 0xFFFFFFFF)).any(axis=1)))
         raise InputError(f"triangle {row}: has the vertex {corners[row].tolist()}; indices begin at 0")
     points = np.ascontiguousarray(points, np.float64)
-    if as_scale(scale) != 1.0:
-        points = points * scale
+    by = as_scale(scale)
+    if by != 1.0:
+        points = points * by
     return _core.make_mesh(points, np.ascontiguousarray(corners, np.uint32), name)
 
 

@@ -114,10 +114,9 @@ def collide(
             "features": features,
             "max_contacts_per_pair": max_contacts_per_pair,
             "devices": devices,
-            "threads": threads,
         }
     )
-    found = _core.collide(pairs.a, pairs.pose_a, pairs.b, pairs.pose_b, pairs.core.count, settings)
+    found = _core.collide(pairs.core, settings)
     return PairContacts._from_bytes(found)
 
 

@@ -137,6 +137,8 @@ class Scene:
         skip_outside: bool = True,
     ) -> None:
         words = {key: value for key, value in locals().items() if key != "self"}
+        if speculative_margin is not None and not speculative:
+            raise InputError("speculative_margin: does nothing without speculative=True")
         self._core = _core.Scene(as_settings(words))
 
     @overload
@@ -154,15 +156,16 @@ class Scene:
         """Adds bodies: all or none.
 
         shapes: one for all poses, or a list of one for each.
-        poses: (4, 4) or (n, 4, 4), rigid, from the body's frame to the world, metres; None is the identity.
+        poses: one for all shapes or one for each, (4, 4) or (n, 4, 4), rigid, from the body's frame to the world,
+            metres; None is the identity.
         Returns an id for one shape and one pose, else (n,) int64. No id is ever given twice.
         Raises InputError for poses that are not finite and rigid to 1e-4, and for numbers that do not fit.
         """
         cores, one_shape = as_shapes(shapes, "shapes")
         matrices, one_pose = as_poses(poses, "poses")
-        if not one_shape and one_pose:
+        if not one_shape and len(matrices) == 1:
             matrices = np.ascontiguousarray(np.broadcast_to(matrices, (len(cores), 4, 4)))
-        if not cores or not len(matrices):
+        if not len(matrices) and (one_shape or not cores):
             return np.empty(0, np.int64)
         ids = self._core.add(cores, matrices)
         return int(ids[0]) if one_shape and one_pose else ids
@@ -291,7 +294,7 @@ class Scene:
             np.ascontiguousarray(np.broadcast_to(x, (n, 3))) if len(x) == 1 else x for x in (starts, along)
         )
         hits = self._core.raycast(starts, along, as_length(max, "max"))
-        return BodyRayHits(*one_of(hits, one and one_direction))
+        return BodyRayHits(*one_of((*hits[0], hits[1]), one and one_direction))
 
     def closest_point(self, points: ArrayLike, max: float = np.inf) -> BodyClosestPoints:
         """The point of all surfaces that is nearest to each point, within `max` metres.
@@ -301,7 +304,7 @@ class Scene:
         """
         places, one = as_points(points, "points")
         found = self._core.closest_points(places, as_length(max, "max"))
-        return BodyClosestPoints(*one_of(found, one))
+        return BodyClosestPoints(*one_of((*found[0], found[1]), one))
 
     def overlaps(self, shape: ShapeLike, pose: Optional[ArrayLike] = None) -> NDArray[np.int64]:
         """(n,) int64: the bodies whose meshes intersect another one, placed here; by slot. Exact.
@@ -341,6 +344,7 @@ class Recorder:
         mesh_source: str = "",
     ) -> None:
         self._core = _core.Recorder(os.fspath(file), scene._core, name, as_length(dt, "dt"), mesh_source)
+        self._finished = False
 
     def record(self) -> None:
         """Adds the scene's last step. Raises RuntimeError when the file cannot be written."""
@@ -349,6 +353,7 @@ class Recorder:
     def finish(self) -> None:
         """Adds the contacts' hash and the animation for viewers. Nothing can be recorded afterwards."""
         self._core.finish()
+        self._finished = True
 
     @property
     def steps(self) -> int:
@@ -369,7 +374,7 @@ class Recorder:
         return self
 
     def __exit__(self, kind: Any, error: Any, trace: Any) -> None:
-        if kind is None:
+        if kind is None and not self._finished:
             self.finish()
 
 

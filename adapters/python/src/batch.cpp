@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "batch.h"
+#include "without_gil.h"
 
 #include <raycontact/error.h>
-
-#include <nanobind/nanobind.h>
 
 #include <algorithm>
 #include <atomic>
@@ -14,8 +13,6 @@
 #include <system_error>
 #include <thread>
 #include <vector>
-
-namespace nb = nanobind;
 
 namespace raycontact::python {
 
@@ -30,7 +27,7 @@ public:
     /// Does one block of items. False: none is left, or one failed.
     bool work_on_block() {
         // A block once taken is done to its end, so that the lowest item to fail is the same in each run.
-        if (stop_) return false;
+        if (stop_ || is_ending()) return false;
         const std::size_t begin = next_.fetch_add(block_);
         if (begin >= count_) return false;
         for (std::size_t i = begin; i < std::min(count_, begin + block_); ++i) {
@@ -69,19 +66,17 @@ private:
 
 } // namespace
 
-void check_signals() {
-    const nb::gil_scoped_acquire gil;
-    if (PyErr_CheckSignals() != 0) throw nb::python_error();
-}
-
 void for_each_item(std::size_t count, std::uint32_t threads, const std::string& item,
                    const std::function<void(std::size_t)>& work) {
     using Clock = std::chrono::steady_clock;
+    constexpr std::uint32_t most_threads = 1024; // as of shapes and scenes
+    if (threads > most_threads)
+        throw InputError("threads: " + std::to_string(threads) + " is too many; give at most 1024");
     if (threads == 0) threads = std::max(1u, std::thread::hardware_concurrency());
     // Blocks small enough that threads end together.
     Batch batch(count, std::clamp<std::size_t>(count / (16 * std::size_t{threads}), 1, 64), work);
     {
-        const nb::gil_scoped_release without_gil;
+        WithoutGil without_gil;
         std::vector<std::jthread> helpers; // joined before the GIL is taken again
         for (std::size_t i = 1; i < std::min<std::size_t>(threads, count); ++i) {
             try {
@@ -96,7 +91,7 @@ void for_each_item(std::size_t count, std::uint32_t threads, const std::string& 
         for (auto looked = Clock::now(); batch.work_on_block();) {
             if (Clock::now() - looked < std::chrono::milliseconds(50)) continue;
             try {
-                check_signals();
+                without_gil.check_signals();
             } catch (...) {
                 batch.stop();
                 throw;

@@ -8,13 +8,9 @@
 
 namespace raycontact::python {
 
-/// Asks Python, from the thread that called us and without the GIL, whether Ctrl-C was pressed; throws
-/// nanobind::python_error if so.
-void check_signals();
-
-/// Calls work(i) for each i below count, on several threads (0: one per core), without the GIL. The calling thread
-/// works too and looks for Ctrl-C. Throws what the lowest i of those that failed threw; an InputError then says which
-/// item it was, if there are several. item: its noun, as "pair".
+/// Calls work(i) for each i below count, on several threads (0: one per core, 1024 at most), without the GIL. The
+/// calling thread works too and looks for Ctrl-C. Throws what the lowest i of those that failed threw; an InputError
+/// then says which item it was, if there are several. item: its noun, as "pair".
 void for_each_item(std::size_t count, std::uint32_t threads, const std::string& item,
                    const std::function<void(std::size_t)>& work);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "arrays.h"
-#include "batch.h"
 #include "bind.h"
+#include "without_gil.h"
 
 #include <clash/parts.h>
 #include <clash/search.h>
@@ -27,14 +27,16 @@ using clash::Part;
 /// Ends a search when Ctrl-C is pressed or the user's function throws.
 class Interruption {
 public:
+    explicit Interruption(WithoutGil& without_gil) : without_gil_(without_gil) {}
+
     /// From any thread; looks for Ctrl-C in the one that this was made in, now and then.
     bool stop() {
         using Clock = std::chrono::steady_clock;
         if (std::this_thread::get_id() == caller_ && Clock::now() - looked_ > std::chrono::milliseconds(50)) {
-            run([] { check_signals(); });
+            run([&] { without_gil_.check_signals(); });
             looked_ = Clock::now();
         }
-        return stopped_;
+        return stopped_ || is_ending();
     }
     /// From one thread at a time.
     template <typename Work>
@@ -52,6 +54,7 @@ public:
     }
 
 private:
+    WithoutGil& without_gil_;
     std::thread::id caller_ = std::this_thread::get_id();
     std::chrono::steady_clock::time_point looked_ = std::chrono::steady_clock::now();
     std::atomic<bool> stopped_ = false;
@@ -87,26 +90,26 @@ nb::tuple find_clashes(const std::vector<std::string>& names, const std::vector<
         check_pose(part.pose, part.name.c_str());
         parts.push_back(std::move(part));
     }
-    Interruption interruption;
-    const auto stop = [&] { return interruption.stop(); };
-    const auto tell = [&](double from, double to) {
-        return [&, from, to](std::size_t done, std::size_t total) {
-            if (progress.is_none()) return;
-            interruption.run([&] {
-                const nb::gil_scoped_acquire gil;
-                progress(from + (to - from) * double(done) / double(total));
-            });
-        };
-    };
     std::vector<clash::PartPair> pairs;
     std::vector<Clash> clashes;
     {
-        const nb::gil_scoped_release without_gil;
+        WithoutGil without_gil;
+        Interruption interruption(without_gil);
+        const auto stop = [&] { return interruption.stop(); };
+        const auto tell = [&](double from, double to) {
+            return [&, from, to](std::size_t done, std::size_t total) {
+                if (progress.is_none()) return;
+                interruption.run([&] {
+                    const nb::gil_scoped_acquire gil;
+                    progress(from + (to - from) * double(done) / double(total));
+                });
+            };
+        };
         pairs = clash::touching_boxes(parts);
         clash::make_shapes(parts, pairs, threads, tell(0, 0.7), stop); // most of the time
         if (!interruption.stop()) clashes = clash::find_clashes(parts, pairs, {threads, tell(0.7, 1), stop});
+        interruption.rethrow();
     }
-    interruption.rethrow();
     nb::list found, faults, open;
     for (const Clash& one : clashes) found.append(tuple_of(one));
     for (std::size_t i = 0; i < parts.size(); ++i) {
@@ -124,7 +127,7 @@ void bind_clash(nb::module_& m) {
         [](const std::vector<std::filesystem::path>& files) {
             std::vector<Part> parts;
             {
-                const nb::gil_scoped_release without_gil;
+                const WithoutGil without_gil;
                 parts = clash::load_parts(files);
             }
             return tuples_of(parts);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "arrays.h"
 #include "bind.h"
+#include "without_gil.h"
 
 #include <raycontact/assembly.h>
 #include <raycontact/error.h>
@@ -90,7 +91,7 @@ void bind_mesh(nb::module_& m) {
             nb::rv_policy::automatic);
     m.def(
         "load_mesh", [](const std::filesystem::path& file) { return load_mesh(file); }, "file"_a,
-        nb::call_guard<nb::gil_scoped_release>());
+        nb::call_guard<WithoutGil>());
     m.def(
         "parse_mesh",
         [](const nb::bytes& bytes, const std::string& format, const std::string& name) {
@@ -110,7 +111,7 @@ void bind_mesh(nb::module_& m) {
         [](const std::filesystem::path& file) {
             std::vector<AssemblyPart> parts;
             {
-                const nb::gil_scoped_release without_gil;
+                const WithoutGil without_gil;
                 parts = load_assembly(file);
             }
             nb::list list;

@@ -2,42 +2,27 @@
 #include "arrays.h"
 #include "batch.h"
 #include "bind.h"
+#include "columns.h"
+#include "contact_bytes.h"
+#include "settings_words.h"
+#include "without_gil.h"
 
 #include <raycontact/error.h>
 #include <raycontact/query.h>
+#include <raycontact/scene.h>
 
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
-#include <limits>
+#include <algorithm>
+#include <span>
 
 namespace raycontact::python {
 
 namespace {
 
 using Shapes = std::vector<std::shared_ptr<Shape>>;
-
-constexpr double nowhere = std::numeric_limits<double>::quiet_NaN();
-
-/// One for all items, or one for each.
-template <typename List>
-const auto& of_item(const List& list, std::size_t i) {
-    return list[list.size() == 1 ? 0 : i];
-}
-
-/// How many items lists of these sizes make: one of a thing counts for all items. Throws InputError where sizes differ.
-std::size_t items_of(std::initializer_list<std::pair<const char*, std::size_t>> lists) {
-    std::pair<const char*, std::size_t> longest{"", 1};
-    for (const auto& list : lists) {
-        if (list.second == 1 || list.second == longest.second) continue;
-        if (longest.second != 1)
-            throw InputError(std::string(list.first) + ": " + std::to_string(list.second) + " given, and "
-                             + std::to_string(longest.second) + " of " + longest.first + "; give as many, or one");
-        longest = list;
-    }
-    return longest.second;
-}
 
 /// Two lists of placed shapes; what is there once counts for all.
 struct PlacedPairs {
@@ -54,55 +39,63 @@ struct PlacedPairs {
     }
 };
 
-/// Numbers of one kind for each item.
-template <typename Number>
-std::vector<Number> column(std::size_t count, Number number, std::size_t width = 1) {
-    return std::vector<Number>(count * width, number);
-}
-
-void put(std::vector<double>& column, std::size_t i, const Vec3& v) {
-    column[3 * i] = v.x;
-    column[3 * i + 1] = v.y;
-    column[3 * i + 2] = v.z;
-}
-
-std::int64_t index_of(std::uint32_t triangle) {
-    return triangle == Shape::no_triangle ? -1 : std::int64_t{triangle};
-}
-
 Array intersects_all(const PlacedPairs& pairs) {
-    auto found = column<std::uint8_t>(pairs.count, 0);
+    AnswerColumn found(pairs.count);
     pairs.for_each([&](std::size_t i, const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) {
-        found[i] = intersects(a, pose_a, b, pose_b) ? 1 : 0;
+        found.set(i, intersects(a, pose_a, b, pose_b));
     });
-    return array_of(std::move(found), {pairs.count});
+    return found.take();
 }
 
 Array common_points(const PlacedPairs& pairs) {
-    auto points = column(pairs.count, nowhere, 3);
+    VectorColumn points(pairs.count);
     pairs.for_each([&](std::size_t i, const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) {
-        if (const auto point = common_point(a, pose_a, b, pose_b)) put(points, i, *point);
+        if (const auto point = common_point(a, pose_a, b, pose_b)) points.set(i, *point);
     });
-    return array_of(std::move(points), {pairs.count, 3});
+    return points.take();
 }
 
 nb::tuple distances(const PlacedPairs& pairs, double max) {
     const std::size_t n = pairs.count;
-    auto least = column(n, any_distance);
-    auto point_a = column(n, nowhere, 3), point_b = column(n, nowhere, 3);
-    auto triangle_a = column<std::int64_t>(n, -1), triangle_b = column<std::int64_t>(n, -1);
+    LengthColumn least(n);
+    VectorColumn point_a(n), point_b(n);
+    IndexColumn triangle_a(n), triangle_b(n);
     pairs.for_each([&](std::size_t i, const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) {
         const auto found = distance(a, pose_a, b, pose_b, max);
         if (!found) return;
-        least[i] = found->distance;
-        put(point_a, i, found->point_a);
-        put(point_b, i, found->point_b);
-        triangle_a[i] = index_of(found->triangle_a);
-        triangle_b[i] = index_of(found->triangle_b);
+        least.set(i, found->distance);
+        point_a.set(i, found->point_a);
+        point_b.set(i, found->point_b);
+        triangle_a.set_triangle(i, found->triangle_a);
+        triangle_b.set_triangle(i, found->triangle_b);
     });
-    return nb::make_tuple(array_of(std::move(least), {n}), array_of(std::move(point_a), {n, 3}),
-                          array_of(std::move(point_b), {n, 3}), array_of(std::move(triangle_a), {n}),
-                          array_of(std::move(triangle_b), {n}));
+    return nb::make_tuple(least.take(), point_a.take(), point_b.take(), triangle_a.take(), triangle_b.take());
+}
+
+/// Each pair's bodies are 2 i and 2 i + 1 of one scene that lives for the call. Pairs go in blocks, between which
+/// Ctrl-C counts.
+ReadOnlyArray collide(const PlacedPairs& pairs, const nb::dict& words) {
+    Settings settings = settings_from(words, {});
+    settings.execution.threads = pairs.threads;
+    auto found = std::make_shared<std::vector<Contact>>();
+    {
+        WithoutGil without_gil;
+        Scene scene(settings);
+        std::vector<Pair> bodies;
+        bodies.reserve(pairs.count);
+        for (std::size_t i = 0; i < pairs.count; ++i) {
+            const BodyId a = scene.add(of_item(pairs.a, i), of_item(pairs.pose_a, i));
+            bodies.emplace_back(a, scene.add(of_item(pairs.b, i), of_item(pairs.pose_b, i)));
+        }
+        constexpr std::size_t block = 4096;
+        for (std::size_t begin = 0; begin < pairs.count && !is_ending(); begin += block) {
+            const std::size_t size = std::min(block, pairs.count - begin);
+            const auto contacts = scene.find_contacts(std::span(bodies).subspan(begin, size));
+            found->insert(found->end(), contacts.begin(), contacts.end());
+            without_gil.check_signals();
+        }
+    }
+    return bytes_of(std::move(found));
 }
 
 nb::tuple closest_points(const Shape& shape, const Matrices& matrices, const Points& given, double max,
@@ -110,60 +103,55 @@ nb::tuple closest_points(const Shape& shape, const Matrices& matrices, const Poi
     const std::vector<Pose> poses = poses_of(matrices);
     const std::vector<Vec3> points = points_of(given);
     const std::size_t n = items_of({{"points", points.size()}, {"poses", poses.size()}});
-    auto least = column(n, any_distance), point = column(n, nowhere, 3);
-    auto triangle = column<std::int64_t>(n, -1);
+    ClosestPointColumns nearest(n);
     for_each_item(n, threads, "point", [&](std::size_t i) {
-        const auto found = closest_point(shape, of_item(poses, i), of_item(points, i), max);
-        if (!found) return;
-        least[i] = found->distance;
-        put(point, i, found->point);
-        triangle[i] = index_of(found->triangle);
+        if (const auto found = closest_point(shape, of_item(poses, i), of_item(points, i), max)) nearest.set(i, *found);
     });
-    return nb::make_tuple(array_of(std::move(least), {n}), array_of(std::move(point), {n, 3}),
-                          array_of(std::move(triangle), {n}));
+    return nearest.take();
 }
 
-nb::tuple ray_hits(const Shape& shape, const Matrices& matrices, const Points& given_origins,
-                   const Points& given_directions, double max, std::uint32_t threads) {
-    const std::vector<Pose> poses = poses_of(matrices);
-    const std::vector<Vec3> origins = points_of(given_origins), directions = points_of(given_directions);
-    const std::size_t n =
-        items_of({{"origins", origins.size()}, {"directions", directions.size()}, {"poses", poses.size()}});
-    auto length = column(n, any_distance), point = column(n, nowhere, 3), normal = column(n, nowhere, 3);
-    auto triangle = column<std::int64_t>(n, -1);
-    for_each_item(n, threads, "ray", [&](std::size_t i) {
-        const auto hit = raycast(shape, of_item(poses, i), of_item(origins, i), of_item(directions, i), max);
-        if (!hit) return;
-        length[i] = hit->distance;
-        put(point, i, hit->point);
-        put(normal, i, hit->normal);
-        triangle[i] = index_of(hit->triangle);
+/// Rays at a shape; what is there once counts for all.
+struct Rays {
+    std::vector<Pose> poses;
+    std::vector<Vec3> origins, directions;
+    std::size_t count;
+
+    Rays(const Matrices& matrices, const Points& from, const Points& along)
+        : poses(poses_of(matrices)), origins(points_of(from)), directions(points_of(along)),
+          count(items_of({{"origins", origins.size()}, {"directions", directions.size()}, {"poses", poses.size()}})) {}
+};
+
+nb::tuple ray_hits(const Shape& shape, const Matrices& matrices, const Points& origins, const Points& directions,
+                   double max, std::uint32_t threads) {
+    const Rays rays(matrices, origins, directions);
+    RayHitColumns hits(rays.count);
+    for_each_item(rays.count, threads, "ray", [&](std::size_t i) {
+        const auto hit =
+            raycast(shape, of_item(rays.poses, i), of_item(rays.origins, i), of_item(rays.directions, i), max);
+        if (hit) hits.set(i, *hit);
     });
-    return nb::make_tuple(array_of(std::move(length), {n}), array_of(std::move(point), {n, 3}),
-                          array_of(std::move(normal), {n, 3}), array_of(std::move(triangle), {n}));
+    return hits.take();
 }
 
-Array rays_meet(const Shape& shape, const Matrices& matrices, const Points& given_origins,
-                const Points& given_directions, double max, std::uint32_t threads) {
-    const std::vector<Pose> poses = poses_of(matrices);
-    const std::vector<Vec3> origins = points_of(given_origins), directions = points_of(given_directions);
-    const std::size_t n =
-        items_of({{"origins", origins.size()}, {"directions", directions.size()}, {"poses", poses.size()}});
-    auto found = column<std::uint8_t>(n, 0);
-    for_each_item(n, threads, "ray", [&](std::size_t i) {
-        found[i] = raycast_any(shape, of_item(poses, i), of_item(origins, i), of_item(directions, i), max) ? 1 : 0;
+Array rays_meet(const Shape& shape, const Matrices& matrices, const Points& origins, const Points& directions,
+                double max, std::uint32_t threads) {
+    const Rays rays(matrices, origins, directions);
+    AnswerColumn found(rays.count);
+    for_each_item(rays.count, threads, "ray", [&](std::size_t i) {
+        found.set(
+            i, raycast_any(shape, of_item(rays.poses, i), of_item(rays.origins, i), of_item(rays.directions, i), max));
     });
-    return array_of(std::move(found), {n});
+    return found.take();
 }
 
 Array contains_all(const Shape& shape, const Matrices& matrices, const Points& given, std::uint32_t threads) {
     const std::vector<Pose> poses = poses_of(matrices);
     const std::vector<Vec3> points = points_of(given);
     const std::size_t n = items_of({{"points", points.size()}, {"poses", poses.size()}});
-    auto found = column<std::uint8_t>(n, 0);
+    AnswerColumn found(n);
     for_each_item(n, threads, "point",
-                  [&](std::size_t i) { found[i] = contains(shape, of_item(poses, i), of_item(points, i)) ? 1 : 0; });
-    return array_of(std::move(found), {n});
+                  [&](std::size_t i) { found.set(i, contains(shape, of_item(poses, i), of_item(points, i))); });
+    return found.take();
 }
 
 Array nearest_rigid(const Matrices& matrices) {
@@ -197,6 +185,9 @@ void bind_queries(nb::module_& m) {
             "a"_a, "pose_a"_a, "b"_a, "pose_b"_a, "threads"_a)
         .def_ro("count", &PlacedPairs::count);
     m.def("nearest_rigid", &nearest_rigid, "poses"_a);
+    m.attr("contact_size") = sizeof(Contact);
+    m.def("contact_layout", &contact_layout);
+    m.def("collide", &collide, "pairs"_a, "settings"_a);
     m.def("intersects", &intersects_all, "pairs"_a);
     m.def("common_points", &common_points, "pairs"_a);
     m.def("distances", &distances, "pairs"_a, "max"_a);

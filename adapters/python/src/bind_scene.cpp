@@ -2,7 +2,11 @@
 #include "arrays.h"
 #include "batch.h"
 #include "bind.h"
+#include "columns.h"
+#include "contact_bytes.h"
 #include "guarded_scene.h"
+#include "settings_words.h"
+#include "without_gil.h"
 
 #include <raycontact/error.h>
 
@@ -17,102 +21,6 @@
 namespace raycontact::python {
 
 namespace {
-
-/// The list of contacts as bytes, which raycontact/contacts.py reads by contact_layout(). The array keeps the list.
-Array bytes_of(std::shared_ptr<const std::vector<Contact>> contacts) {
-    using Held = std::shared_ptr<const std::vector<Contact>>;
-    const auto* first = reinterpret_cast<const std::uint8_t*>(contacts->data());
-    const std::size_t size = contacts->size() * sizeof(Contact);
-    auto held = std::make_unique<Held>(std::move(contacts));
-    const nb::capsule owner(held.release(), [](void* given) noexcept { delete static_cast<Held*>(given); });
-    // No later step writes here, so the array may be written, as what takes arrays by DLPack wants it.
-    return Array(const_cast<std::uint8_t*>(first), {size}, owner, {}, nb::dtype<std::uint8_t>());
-}
-
-/// Name, NumPy type, length (0: a number), offset.
-nb::list contact_layout() {
-    nb::list fields;
-    const auto field = [&](const char* name, const char* type, int length, std::size_t offset) {
-        fields.append(nb::make_tuple(name, type, length, offset));
-    };
-    constexpr std::size_t feature = offsetof(Contact, feature);
-    static_assert(sizeof(BodyId) == 8 && offsetof(Contact, body_b) == offsetof(Contact, body_a) + 8);
-    static_assert(offsetof(ContactFeature, index_b) == offsetof(ContactFeature, index_a) + 4);
-    field("bodies", "<i8", 2, offsetof(Contact, body_a));
-    field("kind", "u1", 0, feature + offsetof(ContactFeature, kind));
-    field("source", "u1", 0, feature + offsetof(ContactFeature, source));
-    field("indices", "<u4", 2, feature + offsetof(ContactFeature, index_a));
-    field("is_new", "?", 0, offsetof(Contact, is_new));
-    field("normal", "<f4", 3, offsetof(Contact, normal));
-    field("depth", "<f4", 0, offsetof(Contact, depth));
-    field("ray_length", "<f4", 0, offsetof(Contact, ray_length));
-    field("weight", "<f4", 0, offsetof(Contact, weight));
-    field("point_a", "<f8", 3, offsetof(Contact, point_a));
-    field("point_b", "<f8", 3, offsetof(Contact, point_b));
-    return fields;
-}
-
-/// None: `key` keeps its value.
-template <typename Value>
-void set_if(const nb::dict& words, const char* key, Value& value) {
-    if (words.contains(key)) value = nb::cast<Value>(words[key]);
-}
-template <typename Value>
-void set_word(const nb::dict& words, const char* key, Value& value, Value (*from)(std::string_view)) {
-    if (words.contains(key)) value = from(nb::cast<std::string>(words[key]));
-}
-
-/// raycontact/scene.py names all words; another one is a TypeError there.
-Settings settings_from(const nb::dict& words, Settings s) {
-    set_word(words, "method", s.method, &method_from);
-    set_word(words, "direction", s.direction, &direction_from);
-    set_word(words, "features", s.features, &features_from);
-    set_if(words, "speculative", s.speculative);
-    set_if(words, "speculative_margin", s.speculative_margin);
-    set_if(words, "max_contacts_per_pair", s.max_contacts_per_pair);
-    set_if(words, "max_contacts", s.max_contacts);
-    set_if(words, "devices", s.execution.devices);
-    set_if(words, "threads", s.execution.threads);
-    set_word(words, "schedule", s.execution.schedule, &schedule_from);
-    set_if(words, "inexact", s.execution.inexact);
-    set_word(words, "caster", s.paper.caster, &caster_from);
-    set_if(words, "displacement_threshold", s.paper.displacement_threshold);
-    set_if(words, "confidence", s.paper.confidence);
-    set_if(words, "culling_distance", s.paper.culling_distance);
-    set_if(words, "distance_extension", s.paper.distance_extension);
-    set_if(words, "max_iterations", s.paper.max_iterations);
-    set_if(words, "cast_lost_walks", s.paper.cast_lost_walks);
-    set_if(words, "skip_outside", s.paper.skip_outside);
-    return s;
-}
-
-std::string word(std::string_view text) {
-    return std::string(text);
-}
-
-nb::dict words_of(const Settings& s) {
-    nb::dict words;
-    words["method"] = word(to_string(s.method));
-    words["direction"] = word(to_string(s.direction));
-    words["features"] = word(to_string(s.features));
-    words["speculative"] = s.is_speculative();
-    words["speculative_margin"] = s.speculative_margin;
-    words["max_contacts_per_pair"] = s.max_contacts_per_pair;
-    words["max_contacts"] = s.max_contacts;
-    words["devices"] = s.execution.devices;
-    words["threads"] = s.execution.threads;
-    words["schedule"] = word(to_string(s.execution.schedule));
-    words["inexact"] = s.execution.inexact;
-    words["caster"] = word(to_string(s.paper.caster));
-    words["displacement_threshold"] = s.paper.displacement_threshold;
-    words["confidence"] = s.paper.confidence;
-    words["culling_distance"] = s.paper.culling_distance;
-    words["distance_extension"] = s.paper.distance_extension;
-    words["max_iterations"] = s.paper.max_iterations;
-    words["cast_lost_walks"] = s.paper.cast_lost_walks;
-    words["skip_outside"] = s.paper.skip_outside;
-    return words;
-}
 
 std::vector<BodyId> ids_of(const Ids& numbers) {
     std::vector<BodyId> ids;
@@ -148,11 +56,16 @@ Array add(GuardedScene& guarded, const std::vector<std::shared_ptr<Shape>>& shap
     if (shapes.size() != 1 && shapes.size() != count)
         throw InputError("Scene.add: " + std::to_string(shapes.size()) + " shapes for " + std::to_string(count)
                          + " poses; give as many, or one shape");
+    // First, so that a list with a fault uses up no ids.
+    const std::vector<Pose> poses = poses_of(matrices);
+    for (std::size_t i = 0; i < count; ++i)
+        check_pose(poses[i], ("Scene.add: poses[" + std::to_string(i) + "]").c_str());
+    for (const auto& shape : shapes)
+        if (!shape) throw InputError("Scene.add: a shape of the list is None");
     std::vector<BodyId> ids;
     ids.reserve(count);
     try {
-        for (std::size_t i = 0; i < count; ++i)
-            ids.push_back(scene->add(shapes[shapes.size() == 1 ? 0 : i], pose_at(matrices, i)));
+        for (std::size_t i = 0; i < count; ++i) ids.push_back(scene->add(of_item(shapes, i), poses[i]));
     } catch (...) {
         for (const BodyId id : ids) scene->remove(id);
         throw;
@@ -160,17 +73,18 @@ Array add(GuardedScene& guarded, const std::vector<std::shared_ptr<Shape>>& shap
     return numbers_of(ids);
 }
 
-Array find_contacts(GuardedScene& guarded, const std::optional<Pairs>& given) {
+ReadOnlyArray find_contacts(GuardedScene& guarded, const std::optional<Pairs>& given) {
     const auto scene = guarded.enter();
     if (given) {
         const std::vector<Pair> pairs = pairs_of(*given);
-        const nb::gil_scoped_release without_gil;
+        WithoutGil without_gil;
         scene->find_contacts(pairs);
+        without_gil.check_signals();
     } else {
-        const nb::gil_scoped_release without_gil;
+        WithoutGil without_gil;
         scene->find_contacts();
+        without_gil.check_signals();
     }
-    check_signals();
     return bytes_of(scene->shared_contacts());
 }
 
@@ -193,52 +107,15 @@ Array pairs_array(std::span<const Pair> pairs) {
     return array_of(std::move(numbers), {pairs.size(), 2});
 }
 
-/// Contacts of many pairs of placed shapes: each pair's bodies are 2 i and 2 i + 1 of one scene that lives for the
-/// call. Pairs go in blocks, between which Ctrl-C counts.
-Array collide(const std::vector<std::shared_ptr<Shape>>& a, const Matrices& pose_a,
-              const std::vector<std::shared_ptr<Shape>>& b, const Matrices& pose_b, std::size_t count,
-              const nb::dict& words) {
-    Settings settings = settings_from(words, {});
-    auto found = std::make_shared<std::vector<Contact>>();
-    {
-        const nb::gil_scoped_release without_gil;
-        Scene scene(settings);
-        std::vector<Pair> pairs;
-        pairs.reserve(count);
-        const auto place = [&](const auto& shapes, const Matrices& matrices, std::size_t i) {
-            try {
-                return scene.add(shapes[shapes.size() == 1 ? 0 : i], pose_at(matrices, matrices.shape(0) == 1 ? 0 : i));
-            } catch (const InputError& error) {
-                if (count == 1) throw;
-                throw InputError("pair " + std::to_string(i) + ": " + error.what());
-            }
-        };
-        for (std::size_t i = 0; i < count; ++i) {
-            const BodyId first = place(a, pose_a, i);
-            pairs.emplace_back(first, place(b, pose_b, i));
-        }
-        constexpr std::size_t block = 4096;
-        for (std::size_t begin = 0; begin < count; begin += block) {
-            const auto contacts = scene.find_contacts(std::span(pairs).subspan(begin, std::min(block, count - begin)));
-            found->insert(found->end(), contacts.begin(), contacts.end());
-            check_signals();
-        }
-    }
-    return bytes_of(std::move(found));
-}
-
 } // namespace
 
 void bind_scene(nb::module_& m) {
-    m.attr("contact_size") = sizeof(Contact);
-    m.def("contact_layout", &contact_layout);
-    m.def("collide", &collide, "a"_a, "pose_a"_a, "b"_a, "pose_b"_a, "count"_a, "settings"_a);
     nb::class_<GuardedScene>(m, "Scene")
         .def(
             "__init__",
             [](GuardedScene* self, const nb::dict& words) {
                 const Settings settings = settings_from(words, {});
-                const nb::gil_scoped_release without_gil; // a driver may take a while to open
+                const WithoutGil without_gil; // a driver may take a while to open
                 new (self) GuardedScene(settings);
             },
             "settings"_a)
@@ -306,7 +183,7 @@ void bind_scene(nb::module_& m) {
         .def("prepare",
              [](GuardedScene& guarded) {
                  const auto scene = guarded.enter();
-                 const nb::gil_scoped_release without_gil;
+                 const WithoutGil without_gil;
                  scene->prepare();
              })
         .def("find_contacts", &find_contacts, "pairs"_a.none())
@@ -327,21 +204,15 @@ void bind_scene(nb::module_& m) {
                     throw InputError("Scene.raycast: " + std::to_string(directions.shape(0)) + " directions for "
                                      + std::to_string(n) + " origins; give one for each");
                 const auto from = points_of(origins), along = points_of(directions);
-                const double nan = std::numeric_limits<double>::quiet_NaN();
-                std::vector<double> length(n, any_distance), points(3 * n, nan), normals(3 * n, nan);
-                std::vector<std::int64_t> triangles(n, -1), bodies(n, -1);
+                RayHitColumns hits(n);
+                IndexColumn bodies(n);
                 for_each_item(n, scene->settings().execution.threads, "ray", [&](std::size_t i) {
                     const auto hit = scene->raycast(from[i], along[i], max);
                     if (!hit) return;
-                    length[i] = hit->distance;
-                    std::ranges::copy(std::array{hit->point.x, hit->point.y, hit->point.z}, &points[3 * i]);
-                    std::ranges::copy(std::array{hit->normal.x, hit->normal.y, hit->normal.z}, &normals[3 * i]);
-                    triangles[i] = hit->triangle;
-                    bodies[i] = number_of(hit->body);
+                    hits.set(i, *hit);
+                    bodies.set(i, number_of(hit->body));
                 });
-                return nb::make_tuple(array_of(std::move(length), {n}), array_of(std::move(points), {n, 3}),
-                                      array_of(std::move(normals), {n, 3}), array_of(std::move(triangles), {n}),
-                                      array_of(std::move(bodies), {n}));
+                return nb::make_tuple(hits.take(), bodies.take());
             },
             "origins"_a, "directions"_a, "max"_a)
         .def(
@@ -350,18 +221,15 @@ void bind_scene(nb::module_& m) {
                 const auto scene = guarded.enter();
                 const auto places = points_of(given);
                 const std::size_t n = places.size();
-                std::vector<double> least(n, any_distance), points(3 * n, std::numeric_limits<double>::quiet_NaN());
-                std::vector<std::int64_t> triangles(n, -1), bodies(n, -1);
+                ClosestPointColumns nearest(n);
+                IndexColumn bodies(n);
                 for_each_item(n, scene->settings().execution.threads, "point", [&](std::size_t i) {
                     const auto found = scene->closest_point(places[i], max);
                     if (!found) return;
-                    least[i] = found->distance;
-                    std::ranges::copy(std::array{found->point.x, found->point.y, found->point.z}, &points[3 * i]);
-                    triangles[i] = found->triangle;
-                    bodies[i] = number_of(found->body);
+                    nearest.set(i, *found);
+                    bodies.set(i, number_of(found->body));
                 });
-                return nb::make_tuple(array_of(std::move(least), {n}), array_of(std::move(points), {n, 3}),
-                                      array_of(std::move(triangles), {n}), array_of(std::move(bodies), {n}));
+                return nb::make_tuple(nearest.take(), bodies.take());
             },
             "points"_a, "max"_a)
         .def(
@@ -371,7 +239,7 @@ void bind_scene(nb::module_& m) {
                 const Pose pose = pose_at(matrices, 0);
                 std::vector<BodyId> ids;
                 {
-                    const nb::gil_scoped_release without_gil;
+                    const WithoutGil without_gil;
                     ids = scene->overlaps(shape, pose);
                 }
                 return numbers_of(ids);

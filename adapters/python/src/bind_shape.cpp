@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "arrays.h"
 #include "bind.h"
+#include "without_gil.h"
 
 #include <raycontact/error.h>
 #include <raycontact/mass.h>
@@ -46,7 +47,7 @@ void bind_shape(nb::module_& m) {
         .def_prop_ro("has_inside", &Shape::has_inside)
         .def(
             "prepare", [](const Shape& shape, std::uint32_t threads) { shape.prepare(threads); }, "threads"_a,
-            nb::call_guard<nb::gil_scoped_release>())
+            nb::call_guard<WithoutGil>())
         .def_prop_ro("is_prepared", &Shape::is_prepared)
         .def_prop_ro("vertices", &view<double, 3, &Shape::file_vertices>, nb::rv_policy::automatic)
         .def_prop_ro("triangles", &view<std::uint32_t, 3, &Shape::triangles>, nb::rv_policy::automatic)
@@ -67,7 +68,7 @@ void bind_shape(nb::module_& m) {
         "make_shape",
         [](const Mesh& mesh, bool repair, const std::string& nesting, std::uint32_t threads) {
             const Nesting wanted = nesting_from(nesting);
-            const nb::gil_scoped_release without_gil;
+            const WithoutGil without_gil;
             return std::const_pointer_cast<Shape>(Shape::make(
                 prepare_mesh(mesh, repair ? Repair::allowed : Repair::as_is, wanted, Check::full, threads), threads));
         },

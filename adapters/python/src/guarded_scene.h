@@ -3,7 +3,7 @@
 
 #include <raycontact/scene.h>
 
-#include <mutex>
+#include <atomic>
 #include <stdexcept>
 
 namespace raycontact::python {
@@ -17,22 +17,24 @@ public:
     /// The scene, for as long as this lives.
     class Entry {
     public:
-        explicit Entry(GuardedScene& guarded) : lock_(guarded.mutex_, std::try_to_lock), scene_(guarded.scene_) {
-            if (!lock_)
-                throw std::runtime_error(
-                    "the scene is in use by another thread; use one scene for each thread, or a lock");
+        explicit Entry(GuardedScene& guarded) : guarded_(guarded) {
+            if (guarded_.in_use_.test_and_set())
+                throw std::runtime_error("the scene is in use: by another thread (use one scene for each thread, or a "
+                                         "lock), or a step was under way when this process was forked");
         }
-        Scene* operator->() const { return &scene_; }
-        Scene& operator*() const { return scene_; }
+        ~Entry() { guarded_.in_use_.clear(); }
+        Entry(const Entry&) = delete;
+        Entry& operator=(const Entry&) = delete;
+        Scene* operator->() const { return &guarded_.scene_; }
+        Scene& operator*() const { return guarded_.scene_; }
 
     private:
-        std::unique_lock<std::mutex> lock_;
-        Scene& scene_;
+        GuardedScene& guarded_;
     };
     Entry enter() { return Entry(*this); }
 
 private:
-    std::mutex mutex_;
+    std::atomic_flag in_use_;
     Scene scene_;
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // raycontact._core: the public headers for Python, as they are. What makes them pleasant is raycontact/*.py.
 #include "bind.h"
+#include "without_gil.h"
 
 #include <raycontact/error.h>
 
@@ -14,6 +15,7 @@ NB_MODULE(_core, m) {
         "Bad input: the text says what is wrong, where, and what to do about it. A ValueError.";
     nb::set_leak_warnings(false); // what a user's program holds when it ends is not ours
     m.attr("version") = RAYCONTACT_VERSION;
+    raycontact::python::watch_the_end();
     raycontact::python::bind_mesh(m);
     raycontact::python::bind_shape(m);
     raycontact::python::bind_queries(m);

@@ -13,7 +13,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <memory>
+#include <thread>
 #include <vector>
 
 namespace raycontact {
@@ -74,6 +76,17 @@ TEST(Fork, AChildMakesScenesOfItsOwn) {
     EXPECT_EQ(in_child([&] {
                   const Crowd own("cpu");
                   return same(own.scene->contacts(), *expected) ? 0 : 1;
+              }),
+              0);
+}
+
+TEST(Fork, AChildPreparesAShapeThatItsParentWasPreparing) {
+    const auto shape = Shape::make(scenes::scene_model("knot", 20'000).mesh);
+    const std::jthread parents([&] { shape->prepare(1); });
+    std::this_thread::sleep_for(std::chrono::milliseconds(20)); // it is likely to be at it
+    EXPECT_EQ(in_child([&] {
+                  shape->prepare(1);
+                  return shape->is_prepared() ? 0 : 1;
               }),
               0);
 }
