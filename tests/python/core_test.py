@@ -410,6 +410,19 @@ def test_a_recording_is_one_that_the_program_replays(torus, tmp_path):
             scene.set_poses(ids, rc.pose(np.c_[np.arange(8) * (2.5 - step / 50), np.zeros(8), np.zeros(8)]))
             scene.find_contacts()
             recorder.record()
+    read = rc.Recording(tmp_path / "rings.glb")
+    assert len(read) == 6 and read.hash == recorder.hash and read.dt == 0.01 and read.name == "rings"
+    assert np.array_equal(read.ids, ids) and read.shape_of.tolist() == [0] * 8 and len(read.shapes) == 1
+    again = rc.Scene(**read.settings)
+    rows = again.add(read.shapes[0], read[0].poses)
+    for step in read:
+        assert step.present.all()
+        again.set_poses(rows, step.poses)
+        again.find_contacts(rows[step.pairs])
+    assert same(again.contacts, scene.contacts), "to the bit"
+    assert np.array_equal(read[-1].poses, scene.poses()) and np.array_equal(read[-1].pairs, scene.pairs)
+    with pytest.raises(IndexError, match="has 6"):
+        read[6]
     assert recorder.steps == 6 and recorder.bytes == (tmp_path / "rings.glb").stat().st_size
     program = os.environ.get("RAYCONTACT_PROGRAM")
     if not program:

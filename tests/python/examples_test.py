@@ -189,12 +189,12 @@ def test_falling(example, tmp_path):
     assert number(text, r"carries (#) N") == pytest.approx(number(text, r"N of (#) N"), rel=0.1)
     assert number(text, r"at the end (#) mm") < 4
     # The recording agrees: bodies fell, and lie on the ground, whose top is z = 0.
-    recording = importlib.import_module("raycontact._recording").Recording(file)
-    first, last = recording.at(0), recording.at(-1)
-    assert not recording.moves[0] and recording.moves[1:].all() and len(recording.times) == 60
-    assert (last.positions[1:, 2] < first.positions[1:, 2]).all()
-    last_poses = rc.pose_from_quaternion(last.positions, last.wxyzs)
-    vertices = [recording.meshes[mesh][1] for mesh in recording.mesh_of]
-    lowest = [(v @ p[:3, :3].T + p[:3, 3])[:, 2].min() for v, p in zip(vertices, last_poses)]
+    recording = rc.Recording(file)
+    first, last = recording[0].poses, recording[-1].poses
+    assert np.array_equal(first[0], last[0]) and len(recording) == 60
+    assert (last[1:, 2, 3] < first[1:, 2, 3]).all()
+    shapes = recording.shapes
+    vertices = [shapes[i].vertices for i in recording.shape_of]
+    lowest = [(v @ p[:3, :3].T + p[:3, 3])[:, 2].min() for v, p in zip(vertices, last)]
     assert min(lowest[1:]) > -4e-3 and max(lowest[1:]) < 0.2
     assert_picture(tmp_path / "run.png")

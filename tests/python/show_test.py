@@ -182,8 +182,7 @@ def test_a_page_plays_a_recording(recording, tmp_path):
         assert np.allclose(now.poses(tori)[0], pose, atol=1e-6)
         assert np.allclose(now.poses(ground)[0], rc.pose((0, 0, -1)))
         assert now.nodes[tori]["batched_scales"].tolist() == [1, step < 10, step >= 10]
-        # Poses of float32 can add or lose a contact that only just touches.
-        assert abs(len(now.contacts()[0]) - contacts) <= 2, step
+        assert len(now.contacts()[0]) == contacts, step
     assert steps[0][1] == 0 < steps[5][1]
     assert np.ptp(end.nodes[ground]["batched_colors"]) < 20, "what never moves is grey"
 
@@ -206,12 +205,12 @@ def test_a_recording_of_the_program(tmp_path):
 
 def test_refuses_what_it_cannot_show(scene, recording, tmp_path):
     page = tmp_path / "page.html"
-    wrong = ((tmp_path / "none.glb", "cannot be read"), (3, "neither a Scene"), (__file__, "is no recording"))
+    wrong = ((tmp_path / "none.glb", "none.glb"), (3, "neither a Scene"), (__file__, "show_test.py"))
     for what, words in wrong:
         with pytest.raises(rc.InputError, match=words):
             rc.show(what, out=page)
     (tmp_path / "cut.glb").write_bytes(recording[0].read_bytes()[:-40])
-    with pytest.raises(rc.InputError, match="cut.glb: was not finished"):
+    with pytest.raises(rc.InputError, match="cut.glb"):
         rc.show(tmp_path / "cut.glb", out=page)
     wrong = (({"fps": 0}, "fps"), ({"fps": np.nan}, "fps"), ({"static": [77]}, "body 77"), ({"port": -1}, "port"))
     for options, words in wrong:
@@ -221,8 +220,8 @@ def test_refuses_what_it_cannot_show(scene, recording, tmp_path):
     unfinished = rc.Recorder(tmp_path / "unfinished.glb", scene)
     scene.find_contacts()
     unfinished.record()
-    with pytest.raises(rc.InputError, match="was not finished, so it has no animation"):
-        rc.show(tmp_path / "unfinished.glb", out=page)
+    rc.show(tmp_path / "unfinished.glb", out=page)
+    assert len(Player(page).batches()) == 2, "it is shown as far as it was written"
 
 
 def test_damaged_recordings_raise_and_nothing_else(recording, tmp_path):
@@ -234,7 +233,7 @@ def test_damaged_recordings_raise_and_nothing_else(recording, tmp_path):
             damaged[at] = rng.integers(256)
         (tmp_path / "damaged.glb").write_bytes(damaged)
         try:
-            importlib.import_module("raycontact._recording").Recording(tmp_path / "damaged.glb").at(-1)
+            list(rc.Recording(tmp_path / "damaged.glb"))
         except rc.InputError:
             refused += 1
     assert refused > 100

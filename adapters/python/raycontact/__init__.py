@@ -30,7 +30,8 @@ from .queries import (
     raycast,
     raycast_any,
 )  # fmt: skip
-from .scene import BodyClosestPoints, BodyRayHits, LostContacts, Recorder, Scene
+from .recording import RecordedStep, Recorder, Recording
+from .scene import BodyClosestPoints, BodyRayHits, LostContacts, Scene
 from .shape import Mass, Shape
 from .show import show
 
@@ -39,7 +40,8 @@ __version__: str = _core.version
 __all__ = [
     "CONTACT_DTYPE", "AssemblyPart", "BodyClosestPoints", "BodyRayHits", "Clash", "Clashes", "ClosestPoint",
     "CollisionManager", "Contacts", "DeviceInfo", "Distance", "FeatureKind", "InputError", "LostContacts", "Mass",
-    "Mesh", "MeshReport", "PairContacts", "RayHit", "Recorder", "Scene", "Shape", "StepStats", "clash",
-    "closest_point", "collide", "common_point", "contains", "distance", "intersects", "list_devices", "load_assembly",
-    "nearest_rigid", "pose", "pose_from_quaternion", "raycast", "raycast_any", "show",
+    "Mesh", "MeshReport", "PairContacts", "RayHit", "RecordedStep", "Recorder", "Recording", "Scene", "Shape",
+    "StepStats", "clash", "closest_point", "collide", "common_point", "contains", "distance", "intersects",
+    "list_devices", "load_assembly", "nearest_rigid", "pose", "pose_from_quaternion", "raycast", "raycast_any",
+    "show",
 ]  # fmt: skip

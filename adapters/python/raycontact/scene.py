@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import os
 from typing import Any, NamedTuple, Optional, Union, overload
 
 import numpy as np
@@ -322,60 +321,4 @@ class Scene:
         return f"<Scene: {len(self)} bodies, method {settings['method']}, devices {settings['devices']}>"
 
 
-class Recorder:
-    """Records what a scene does, from its next step on: `raycontact replay` finds its contacts again, `raycontact view`
-    and `raycontact.show` show it, and any glTF viewer plays it.
-
-    Call `record` after each `find_contacts`; use it in a `with` statement, which ends with `finish`.
-
-    file: its name should end in .glb; what was there is lost. name, mesh_source: what the recording says of itself.
-    dt: seconds between two steps.
-    Raises InputError when the file cannot be made and for dt <= 0; `record` raises RuntimeError when it cannot be
-    written.
-    """
-
-    def __init__(
-        self,
-        file: Union[str, os.PathLike[str]],
-        scene: Scene,
-        *,
-        dt: float = 1.0 / 60,
-        name: str = "recording",
-        mesh_source: str = "",
-    ) -> None:
-        self._core = _core.Recorder(os.fspath(file), scene._core, name, as_length(dt, "dt"), mesh_source)
-        self._finished = False
-
-    def record(self) -> None:
-        """Adds the scene's last step. Raises RuntimeError when the file cannot be written."""
-        self._core.record()
-
-    def finish(self) -> None:
-        """Adds the contacts' hash and the animation for viewers. Nothing can be recorded afterwards."""
-        self._core.finish()
-        self._finished = True
-
-    @property
-    def steps(self) -> int:
-        """Recorded so far."""
-        return self._core.steps
-
-    @property
-    def bytes(self) -> int:
-        """Of the file."""
-        return self._core.bytes
-
-    @property
-    def hash(self) -> str:
-        """Of the contacts so far: the same for every device and number of threads."""
-        return self._core.hash
-
-    def __enter__(self) -> Recorder:
-        return self
-
-    def __exit__(self, kind: Any, error: Any, trace: Any) -> None:
-        if kind is None and not self._finished:
-            self.finish()
-
-
-__all__ = ["BodyClosestPoints", "BodyRayHits", "LostContacts", "Recorder", "Scene", "StepStats"]
+__all__ = ["BodyClosestPoints", "BodyRayHits", "LostContacts", "Scene", "StepStats"]

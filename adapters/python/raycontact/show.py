@@ -17,10 +17,8 @@ from numpy.typing import ArrayLike
 
 from ._arrays import as_count, as_ids, as_length
 from ._core import InputError
-from ._recording import Placed, Recording
 from .contacts import Contacts
-from .mesh import Mesh
-from .poses import pose_from_quaternion
+from .recording import Recording
 from .scene import Scene
 from .shape import Shape
 
@@ -52,14 +50,14 @@ def show(
     out: writes a page that needs no server to this file instead of serving; it can be mailed, or put on a web site.
     contacts: draws contacts as points and their normals as lines, and bodies see-through. Yellow ones are shallow, the
         deepest shown so far is red, speculative ones are blue. A scene's are those of its last step; a recording's are
-        found again with its direction and features, from its animation's float32 poses, without speculative ones.
+        found again by its direction, features and limits, without speculative ones.
     static: ids of a scene's bodies that are drawn grey, as a recording's bodies that never move are.
     fps: pictures a second of a recording; it plays as fast as it was recorded.
     host, port: where to serve; the next free port where this one is taken. "0.0.0.0" lets other machines see it.
     block: serves until Ctrl-C. False: returns viser's server at once; `server.stop()` ends it.
 
     Prints the address that it serves at. World frame, metres, z up. Raises ImportError without viser, and InputError
-    for a file that is no finished recording, for ids that are not in the scene and for fps <= 0.
+    for a file that is no recording, for ids that are not in the scene and for fps <= 0.
     """
     rate = as_length(fps, "fps")
     if not 0 < rate < np.inf:
@@ -85,12 +83,20 @@ def show(
     return None if block else server
 
 
+class _Placed(NamedTuple):
+    poses: np.ndarray  # (n, 4, 4)
+    present: np.ndarray  # (n,) bool
+
+    def wxyzs(self) -> np.ndarray:
+        return _quaternions(self.poses[:, :3, :3])
+
+
 class _Film(NamedTuple):
     shapes: list[Shape]
     shape_of: np.ndarray  # (n,) int64
     static: np.ndarray  # (n,) bool
     times: np.ndarray  # (f,), seconds
-    poses: Callable[[int], Placed]
+    poses: Callable[[int], _Placed]
     contacts: Callable[[int], Contacts]
 
 
@@ -105,31 +111,42 @@ def _film_of_scene(scene: Scene, static: ArrayLike) -> _Film:
     shapes = list({id(shape._core): shape for shape in bodies}.values())
     place_of = {id(shape._core): place for place, shape in enumerate(shapes)}
     shape_of = np.array([place_of[id(shape._core)] for shape in bodies], np.int64)
-    poses = scene.poses().reshape(-1, 4, 4)
-    placed = Placed(poses[:, :3, 3], _quaternions(poses[:, :3, :3]), np.ones(len(ids), np.bool_))
+    placed = _Placed(scene.poses(), np.ones(len(ids), np.bool_))
     found = scene.contacts
     return _Film(shapes, shape_of, np.isin(ids, grey), np.zeros(1), lambda step: placed, lambda step: found)
 
 
 def _film_of_recording(recording: Recording, fps: float) -> _Film:
+    if not len(recording):
+        raise InputError("show: the recording has no step")
+    times = np.arange(len(recording)) * recording.dt
     # The first step of each period, and the last of all.
-    steps = np.unique(np.floor(recording.times.astype(np.float64) * fps + 1e-3), return_index=True)[1]
-    steps = np.union1d(steps, len(recording.times) - 1)
-    shapes = [Shape(Mesh(*mesh, name=name), repair=False) for name, *mesh in recording.meshes]
-    scene = Scene(direction=recording.direction, features=recording.features)
-    ids = np.array([scene.add(shapes[i]) for i in recording.mesh_of], np.int64)
+    steps = np.unique(np.floor(times * fps + 1e-3), return_index=True)[1]
+    steps = np.union1d(steps, len(times) - 1)
+    shapes, shape_of = recording.shapes, recording.shape_of
+    kept = (
+        "direction",
+        "features",
+        "max_contacts_per_pair",
+        "max_contacts",
+    )  # "certified" finds what is there in any step
+    scene = Scene(**{key: recording.settings[key] for key in kept})
+    ids = np.array([scene.add(shapes[i]) for i in shape_of], np.int64)
+    still, first = np.ones(len(ids), np.bool_), recording[0].poses
+    for step in steps:
+        at = recording[int(step)]
+        still &= ~at.present | (at.poses == first).all(axis=(1, 2))
+
+    def poses(frame: int) -> _Placed:
+        step = recording[int(steps[frame])]
+        return _Placed(step.poses, step.present)
 
     def contacts(frame: int) -> Contacts:
-        positions, wxyzs, present = recording.at(steps[frame])
-        scene.set_poses(ids, pose_from_quaternion(positions, wxyzs))
-        # What is not there yet, or no more, meets nobody.
-        scene.set_filter(ids[present], 1, 0xFFFFFFFF)
-        scene.set_filter(ids[~present], 0, 0)
-        return scene.find_contacts()
+        step = recording[int(steps[frame])]
+        scene.set_poses(ids, step.poses)
+        return scene.find_contacts(ids[step.pairs])
 
-    still = ~recording.moves if recording.moves.any() else recording.moves
-    times = recording.times[steps]
-    return _Film(shapes, recording.mesh_of, still, times, lambda frame: recording.at(steps[frame]), contacts)
+    return _Film(shapes, shape_of, still & ~still.all(), times[steps], poses, contacts)
 
 
 class _Stage:
@@ -154,14 +171,15 @@ class _Stage:
         own = (np.where(film.static, 0, np.cumsum(~film.static) - 1)) % len(_COLOURS)
         colours = np.where(film.static[:, None], np.array(_GREY, np.uint8), _COLOURS[own])
         self.batches = []
+        wxyzs = placed.wxyzs()
         for i, shape in enumerate(film.shapes):
             which = np.flatnonzero(film.shape_of == i)
             batch = server.scene.add_batched_meshes_simple(
                 f"/bodies/{i} {shape.name.replace('/', ' ')}".rstrip(),  # a slash begins a node below
                 shape.vertices,
                 shape.triangles,
-                placed.wxyzs[which],
-                placed.positions[which] - self.middle,
+                wxyzs[which],
+                placed.poses[which, :3, 3] - self.middle,
                 batched_scales=placed.present[which].astype(np.float32),
                 batched_colors=colours[which],
                 lod="off",
@@ -190,9 +208,10 @@ class _Stage:
         placed = self.film.poses(frame)
         found = None if self.points is None else self.film.contacts(frame)
         with self.server.atomic():
+            wxyzs = placed.wxyzs()
             for which, batch in self.batches:
-                batch.batched_positions = placed.positions[which] - self.middle
-                batch.batched_wxyzs = placed.wxyzs[which]
+                batch.batched_positions = placed.poses[which, :3, 3] - self.middle
+                batch.batched_wxyzs = wxyzs[which]
                 batch.batched_scales = placed.present[which].astype(np.float32)
             if found is not None:
                 self.draw_contacts(found)
@@ -282,7 +301,7 @@ def _box(film: _Film) -> np.ndarray:
     for frame in (0, len(film.times) - 1):
         placed = film.poses(frame)
         counted = placed.present if film.static.all() else placed.present & ~film.static
-        poses = pose_from_quaternion(placed.positions[counted], placed.wxyzs[counted])
+        poses = placed.poses[counted]
         ends.append((corners[counted] @ poses[:, :3, :3].transpose(0, 2, 1) + poses[:, None, :3, 3]).reshape(-1, 3))
     points = np.concatenate(ends)
     return np.array([points.min(axis=0), points.max(axis=0)]) if len(points) else np.zeros((2, 3))

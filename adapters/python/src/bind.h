@@ -11,7 +11,7 @@ void bind_shape(nanobind::module_& m);
 void bind_queries(nanobind::module_& m);
 void bind_stats(nanobind::module_& m);
 void bind_scene(nanobind::module_& m);
-void bind_recorder(nanobind::module_& m);
+void bind_recordings(nanobind::module_& m);
 void bind_clash(nanobind::module_& m);
 
 } // namespace raycontact::python

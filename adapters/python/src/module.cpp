@@ -21,6 +21,6 @@ NB_MODULE(_core, m) {
     raycontact::python::bind_queries(m);
     raycontact::python::bind_stats(m);
     raycontact::python::bind_scene(m);
-    raycontact::python::bind_recorder(m);
+    raycontact::python::bind_recordings(m);
     raycontact::python::bind_clash(m);
 }
