@@ -3,8 +3,6 @@
 
 #include <nanobind/nanobind.h>
 
-#include <pthread.h>
-
 #include <atomic>
 #include <chrono>
 #include <thread>
@@ -36,7 +34,10 @@ bool is_ending() {
 
 void watch_the_end() {
     nb::module_::import_("atexit").attr("register")(nb::cpp_function(&end));
-    pthread_atfork(nullptr, nullptr, [] { computing = 0; }); // a child has none of its parent's threads
+    const nb::module_ os = nb::module_::import_("os");
+    if (nb::hasattr(os, "register_at_fork")) { // a child has none of its parent's threads
+        os.attr("register_at_fork")(nb::arg("after_in_child") = nb::cpp_function([] { computing = 0; }));
+    }
 }
 
 WithoutGil::WithoutGil() : state_(nullptr) {
