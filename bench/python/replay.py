@@ -3,8 +3,8 @@
 """What Python costs: a recording replayed by `raycontact replay`, in C++, and through set_poses and find_contacts here.
 
 `raycontact run avalanche --record FILE.glb` makes one; all bodies must be there from the first step on. Both find the
-same contacts of the same pairs with the same threads; their numbers are compared. Runs alternate. Prints the median step
-of each, milliseconds: poses set and contacts found, nothing else.
+same contacts of the same pairs with the same threads; their numbers are compared. Runs alternate. Prints the median
+step of each, milliseconds: poses set and contacts found, nothing else.
 """
 
 import argparse
