@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
-from ._arrays import as_count, as_length, as_poses
+from ._arrays import as_count, as_length, as_pose
 from ._core import InputError
 from .mesh import Mesh, scaled_parts
 
@@ -154,9 +154,7 @@ def _parts_of(assembly: Any) -> list[tuple[str, _core.Mesh, NDArray[np.float64]]
     parts = []
     for i, item in enumerate(assembly):
         name, mesh, pose = item if isinstance(item, tuple) and len(item) == 3 else (None, item, None)
-        matrices, one = as_poses(pose, f"part {i}: pose", rigid=True)
-        if not one:
-            raise InputError(f"part {i}: pose: give one, (4, 4)")
+        matrices = as_pose(pose, f"part {i}: pose", rigid=True)[None]
         if id(mesh) not in made:
             made[id(mesh)] = mesh if isinstance(mesh, Mesh) else Mesh(mesh)
         own = made[id(mesh)]
