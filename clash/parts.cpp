@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <clash/parts.h>
 
-#include "broadphase/sweep_and_prune.h"
+#include "broadphase/broad_phase.h"
 #include "executor/executor.h"
 #include "mesh/measure.h"
 
@@ -80,7 +80,8 @@ std::vector<PartPair> touching_boxes(const std::vector<Part>& parts) {
     std::vector<WorldBox> boxes;
     for (std::size_t i = 0; i < parts.size(); ++i) boxes.push_back(box_of(parts[i], static_cast<BodySlot>(i)));
     std::vector<SlotPair> found;
-    sweep_and_prune(boxes, found);
+    Executor executor(boxes.size() < 1000 ? 1 : 0);
+    BroadPhase().find(executor, boxes, found);
     std::vector<PartPair> pairs;
     pairs.reserve(found.size());
     for (const auto& [a, b] : found) pairs.push_back({a, b});

@@ -2,7 +2,7 @@
 #include <raycontact/scene.h>
 
 #include "body_slots.h"
-#include "broadphase/sweep_and_prune.h"
+#include "broadphase/broad_phase.h"
 #include "contacts/predictions.h"
 #include "executor/float_environment.h"
 #include "narrow_phase.h"
@@ -133,9 +133,10 @@ struct Scene::State {
         float reach = 0;
         for (const PlacedBody& body : bodies)
             if (body.shape != nullptr) reach = std::max(reach, body.shape->data().header.ray_reach);
-        boxes.clear();
-        for (BodySlot i = 0; i < bodies.size(); ++i) {
-            if (bodies[i].shape == nullptr) continue;
+        boxes.resize(bodies.size());
+        narrow.parts().executor().each(bodies.size(), 256, [&](BodySlot i) {
+            boxes[i] = {{}, i};
+            if (bodies[i].shape == nullptr) return;
             const Shape& shape = *bodies[i].shape;
             const bool open = !shape.has_inside();
             // What two boxes are wider by is at least the margin of their pair.
@@ -144,11 +145,13 @@ struct Scene::State {
             const auto box_at = [&](const Pose& pose) {
                 return world_box({shape.box_min(), shape.box_max()}, pose, (open ? double(reach) : 0) + near);
             };
-            boxes.push_back({box_at(bodies[i].pose), i});
-            if (!next.empty()) boxes.back().add(box_at(next[i]));
-        }
+            static_cast<Box&>(boxes[i]) = box_at(bodies[i].pose);
+            if (!next.empty()) boxes[i].add(box_at(next[i]));
+        });
+        if (slots.count() < bodies.size())
+            std::erase_if(boxes, [&](const WorldBox& box) { return bodies[box.body].shape == nullptr; });
         pairs_stand = false;
-        sweep_and_prune(boxes, slot_pairs);
+        broad_phase.find(narrow.parts().executor(), boxes, slot_pairs);
         std::erase_if(slot_pairs,
                       [&](const SlotPair& pair) { return !may_meet(notes[pair.first], notes[pair.second]); });
         pairs.clear();
@@ -214,6 +217,7 @@ struct Scene::State {
 
     void trim() {
         boxes.shrink_to_fit();
+        broad_phase.trim();
         pairs.shrink_to_fit();
         slot_pairs.shrink_to_fit();
     }
@@ -235,6 +239,7 @@ struct Scene::State {
     NextPoses next_poses;
     std::span<const Pose> next; ///< of this step; empty without speculative contacts
     std::vector<WorldBox> boxes;
+    BroadPhase broad_phase;
     std::vector<Pair> pairs;
     std::vector<SlotPair> slot_pairs; ///< the same pairs, by slot
     std::shared_ptr<std::vector<Contact>> contacts = std::make_shared<std::vector<Contact>>();
