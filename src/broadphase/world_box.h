@@ -9,6 +9,9 @@ namespace raycontact {
 /// World box of a body, metres.
 struct WorldBox : Box {
     BodySlot body = 0;
+    friend bool operator==(const WorldBox& a, const WorldBox& b) {
+        return a.low == b.low && a.high == b.high && a.body == b.body;
+    }
 };
 
 /// The box around a body-frame box that is widened by `grow` metres on every side, in the body frame, and then placed.
