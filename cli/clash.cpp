@@ -82,7 +82,9 @@ std::string json_lines(const Result& result) {
 std::string table(const Result& result) {
     std::string text;
     for (const clash::Clash& c : result.clashes) {
-        const std::string depth = !c.depth ? "no depth" : *c.depth > 0 ? fmt::format("{} m", *c.depth) : "touching";
+        const std::string depth = !c.depth       ? "no depth"
+                                  : *c.depth > 0 ? fmt::format("{} m", float(*c.depth))
+                                                 : "touching";
         const clash::Part &a = result.parts[c.a], &b = result.parts[c.b];
         text += fmt::format("{:>12}  {}  x  {}  at {}, {}, {}{}\n", depth, a.name, b.name, c.point.x, c.point.y,
                             c.point.z, c.duplicate ? "  (the same part in the same place)" : "");
