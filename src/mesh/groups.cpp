@@ -73,7 +73,7 @@ std::vector<AssemblyPart> Groups::parts(Mesh&& mesh, bool join, std::vector<std:
         if (is_new) names.emplace_back(name);
         return known->second;
     };
-    if (begin(0) > 0) number_of("default"); // as OBJ calls what is before the first name
+    if (begin(0) > 0) number_of(unnamed);
     for (std::size_t run = 0; run < runs_.size(); ++run) {
         if (begin(run) == begin(run + 1)) continue;
         const std::uint32_t number = number_of(runs_[run].first);
@@ -82,7 +82,7 @@ std::vector<AssemblyPart> Groups::parts(Mesh&& mesh, bool join, std::vector<std:
     }
     std::set<std::string> empty;
     for (const auto& run : runs_)
-        if (!numbers.contains(run.first)) empty.insert(run.first);
+        if (run.first != unnamed && !numbers.contains(run.first)) empty.insert(run.first);
     if (!empty.empty()) notes.push_back("left out what has no triangles: " + in_list(empty));
 
     DisjointSets sets;

@@ -13,6 +13,9 @@ namespace raycontact {
 /// The names that a file gives to runs of its triangles.
 class Groups {
 public:
+    /// As OBJ calls what has no name.
+    static constexpr const char* unnamed = "default";
+
     /// The triangles from `first` on have this name.
     void begin(std::string name, std::size_t first);
     /// How many different names there are that have some of so many triangles.

@@ -80,7 +80,7 @@ private:
         std::string name;
         for (std::string_view word = scanner_.word_on_line(); !word.empty(); word = scanner_.word_on_line())
             name.append(name.empty() ? "" : " ").append(printable(word));
-        return name.empty() ? "default" : name;
+        return name.empty() ? Groups::unnamed : name;
     }
 
     /// And counts it; of points each.

@@ -29,11 +29,10 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
         const Mesh mesh = RAYCONTACT_FUZZ_READER(file);
         check_mesh(mesh, file.shown);
         constexpr std::string_view name = RAYCONTACT_FUZZ_FILE;
-        constexpr auto read_parts = name.ends_with(".gltf")  ? &read_gltf_parts
-                                    : name.ends_with(".obj") ? &read_obj_parts
-                                    : name.ends_with(".stl") ? &read_stl_parts
-                                                             : nullptr;
-        if constexpr (read_parts != nullptr) {
+        if constexpr (!name.ends_with(".ply") && !name.ends_with(".off")) {
+            constexpr auto read_parts = name.ends_with(".gltf")  ? &read_gltf_parts
+                                        : name.ends_with(".obj") ? &read_obj_parts
+                                                                 : &read_stl_parts;
             std::size_t triangles = 0;
             std::vector<std::string> left_out;
             for (const AssemblyPart& part : read_parts(file, left_out)) {

@@ -249,8 +249,10 @@ TEST(HostileMesh, Ply) {
     refused(folder.write("point.ply", replaced(ascii, "3 0 4 5", "1 0")));
     const std::string strips = replaced(ascii, "element face 48", "element tristrips 48");
     EXPECT_NO_THROW(load_mesh(folder.write("strips.ply", strips)));
-    for (const char* with : {"3 0 4 24", "3 0 4 -2", "3 0 4 x", "4000000000 0 4 5", "-1 0 4 5", "4 0 4 5"})
+    for (const char* with : {"3 0 4 24", "3 0 4 -2", "3 0 4 x", "4000000000 0 4 5", "-1 0 4 5", "400 0 4 5"}) {
+        SCOPED_TRACE(with);
         refused(folder.write("strips.ply", replaced(strips, "3 0 4 5", with)));
+    }
 }
 
 TEST(HostileMesh, PlyHeaderLinesThatMayBeALostProperty) {

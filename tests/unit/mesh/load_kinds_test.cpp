@@ -137,7 +137,7 @@ TEST(LoadKinds, ObjObjectsElseGroupsAreParts) {
     };
     for (const std::string kind : {"o", "g"}) {
         Texts left_out;
-        const auto parts = parts_of(grouped(box(), 1, {{0, kind + " the first"}}) + kind + " empty\n"
+        const auto parts = parts_of(grouped(box(), 1, {{0, kind + " the first"}}) + kind + "\n" + kind + " empty\n"
                                         + grouped(box(2), 9, {{0, kind + " b"}, {5, kind + " c"}, {7, kind + " b"}}),
                                     &left_out);
         // Group c is a hole in b: open in both. An object is one whatever it shares.
