@@ -85,7 +85,8 @@ GltfFile::GltfFile(const InputFile& file) : file_(file), bytes_(file.bytes.size(
         text = chunk(12, "JSON");
         after_json_ = 20 + text.size();
     }
-    constexpr int deepest = 64; // extras may hold anything
+    text = text.substr(0, text.find_last_not_of(text_padding) + 1); // some fill chunks with NUL
+    constexpr int deepest = 64;                                     // extras may hold anything
     if (json_depth(text) > deepest)
         file.fail("nests its JSON more than " + std::to_string(deepest) + " deep; export without extras");
     json_ = json::parse(text);

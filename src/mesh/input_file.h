@@ -14,9 +14,13 @@
 #include <cstring>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <type_traits>
 
 namespace raycontact {
+
+/// What programs fill the end of a text with: NUL and Ctrl-Z.
+constexpr std::string_view text_padding("\0\x1a", 2);
 
 /// The limits on one mesh: three corners of every triangle are counted in 32 bits.
 constexpr std::size_t most_vertices = 0xfffffffeu;

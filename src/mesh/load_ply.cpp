@@ -53,7 +53,8 @@ public:
     Mesh read() {
         read_header();
         for (const Element& element : elements_) read_element(element);
-        if (ascii_ ? !text_.at_end() : rest().find_first_not_of(" \t\r\n") != std::string_view::npos)
+        if (ascii_ ? !text_.at_end()
+                   : rest().find_first_not_of(" \t\r\n" + std::string(text_padding)) != std::string::npos)
             file_.fail("more data than its header announces; it is damaged");
         polygons_.finish(mesh_);
         nonfinite_.finish(mesh_, file_);

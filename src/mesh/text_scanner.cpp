@@ -60,7 +60,7 @@ double beyond_range(std::string_view word) {
 TextScanner::TextScanner(const InputFile& file)
     : file_(file), at_(file.bytes.data()), end_(file.bytes.data() + file.bytes.size()) {
     if (file.bytes.starts_with("\xef\xbb\xbf")) at_ += 3; // a byte order mark
-    while (end_ != at_ && (end_[-1] == '\0' || end_[-1] == '\x1a')) --end_;
+    while (end_ != at_ && text_padding.find(end_[-1]) != std::string_view::npos) --end_;
 }
 
 bool TextScanner::joins(const char* backslash) const {
@@ -164,7 +164,7 @@ void TextScanner::vertex_on_line(std::vector<Vec3>& vertices, NonfiniteVertices&
 std::size_t TextScanner::numbers_on_line(const char* what) {
     std::size_t count = 0;
     for (std::string_view word = word_on_line(); !word.empty(); word = word_on_line()) {
-        number(word, what);
+        any_number(word, what);
         ++count;
     }
     return count;

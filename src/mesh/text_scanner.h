@@ -39,7 +39,8 @@ public:
     Vec3 point_on_line();
     /// Appends the three coordinates on this line; where one is not finite the vertex is told.
     void vertex_on_line(std::vector<Vec3>& vertices, NonfiniteVertices& nonfinite);
-    /// Reads the rest of this line as numbers, or throws an error about `what`; returns how many there are.
+    /// Reads the rest of this line as numbers, finite or not, or throws an error about `what`; returns how many there
+    /// are.
     std::size_t numbers_on_line(const char* what);
 
     char comment = '\n';      ///< starts a comment (OBJ and OFF '#')

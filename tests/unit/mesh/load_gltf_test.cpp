@@ -52,6 +52,13 @@ TEST(LoadGltf, BufferFileMayBeLongerThanItsBuffer) {
     EXPECT_EQ(mesh.triangles, made.triangles);
 }
 
+TEST(LoadGltf, JsonMayBeFilledWithNul) {
+    const TempFolder folder;
+    std::string json = gltf_json(quad(), R"([{"mesh":0}])", "");
+    json.resize((json.size() / 4 + 1) * 4, '\0');
+    EXPECT_EQ(load_mesh(folder.write("m.glb", glb(json, gltf_buffer(quad())))).vertices, quad().vertices);
+}
+
 TEST(LoadGltf, BufferInBase64) {
     const TempFolder folder;
     // (0 0 0), (1 0 0), (0 1 0); then 0 1 2 in 16 bits: 42 bytes.

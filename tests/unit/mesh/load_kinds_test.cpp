@@ -171,6 +171,11 @@ TEST(LoadKinds, ObjAsModellersWriteIt) {
         SCOPED_TRACE(tail);
         EXPECT_EQ(load(tail).triangles, (Triangles{{0, 1, 2}}));
     }
+    const std::string pad("\0\x1a\0", 3);
+    for (const auto& file :
+         {folder.write("a.ply", as_ascii_ply(box()) + pad), folder.write("b.ply", as_binary_ply(box()) + pad),
+          folder.write("m.off", as_off(box()) + pad), folder.write("m.stl", as_ascii_stl(box()) + pad)})
+        EXPECT_EQ(load_mesh(file).triangles.size(), 12u) << file;
     const Mesh padded = load(std::string("f 1 2 3\n\0\0\x1a\0", 12));
     EXPECT_EQ(padded.triangles, (Triangles{{0, 1, 2}}));
     EXPECT_EQ(padded.repairs, Texts{"left out 4 padding bytes at the end"});
@@ -231,6 +236,8 @@ TEST(LoadKinds, VerticesThatAreNotFiniteCountOnlyWhereATriangleUsesThem) {
         EXPECT_EQ(mesh.vertices[8], mesh.vertices[0]);
         EXPECT_EQ(mesh.repairs, Texts{"left out 1 vertex that is not finite and that no triangle uses"});
     }
+    // A colour is not used.
+    EXPECT_EQ(load_mesh(folder.write("m.obj", three + "v 0 0 1 nan 1.#IND 0\nf 1 2 4\n")).repairs, Texts());
     // What is a comment stays one.
     EXPECT_EQ(load_mesh(folder.write("m.obj", "v 0. 0 1.#IN\nv 1 0 2.#5\nv 0 1 0\nf 1 2 3#4\n")).vertices[1].z, 2);
 }
