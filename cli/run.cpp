@@ -211,15 +211,15 @@ void warn_if_open(const SceneDescription& scene, const BodyStart& body) {
     if (!report.closed) {
         what = fmt::format("open, with {}: bodies that come from behind its faces pass it",
                            counted(report.border_edges, "border edge", "border edges"));
-        // Areas that face the way of gravity, and against it.
+        // Areas that face the way of gravity, and against it; in the body's frame.
+        const auto vector = [](const raycontact::Vec3& p, const raycontact::Vec3& from) {
+            return btVector3(btScalar(p.x - from.x), btScalar(p.y - from.y), btScalar(p.z - from.z));
+        };
+        const btVector3 gravity = vector(scene.gravity, {}) * body.pose.getBasis();
+        const auto place = shape.vertices();
         double down = 0, up = 0;
         for (const auto& [a, b, c] : shape.triangles()) {
-            const auto corner = [&](std::uint32_t v) {
-                const raycontact::Vec3& p = shape.vertices()[v];
-                return body.pose.getBasis() * btVector3(p.x, p.y, p.z);
-            };
-            const btVector3 area = (corner(b) - corner(a)).cross(corner(c) - corner(a)) / 2;
-            const double along = area.dot(btVector3(scene.gravity.x, scene.gravity.y, scene.gravity.z));
+            const double along = vector(place[b], place[a]).cross(vector(place[c], place[a])).dot(gravity);
             (along > 0 ? down : up) += std::fabs(along);
         }
         if (down > 2 * up) what += "; its faces look down, so what falls on it falls through: turn them over";
