@@ -4,6 +4,7 @@
 #include "broadphase/broad_phase.h"
 #include "executor/executor.h"
 #include "mesh/measure.h"
+#include "printable.h"
 
 #include <raycontact/error.h>
 
@@ -64,14 +65,17 @@ double smaller_size(const Part& a, const Part& b) {
     return std::min(size(*a.shape), size(*b.shape));
 }
 
-std::vector<Part> load_parts(const std::vector<std::filesystem::path>& files) {
+std::vector<Part> load_parts(const std::vector<std::filesystem::path>& files, std::vector<std::string>& left_out) {
     std::vector<Part> parts;
     std::vector<std::filesystem::path> file_of;
-    for (const std::filesystem::path& file : files)
-        for (AssemblyPart& part : load_assembly(file)) {
+    for (const std::filesystem::path& file : files) {
+        std::vector<std::string> of_file;
+        for (AssemblyPart& part : load_assembly(file, &of_file)) {
             parts.push_back({std::move(part), nullptr, {}});
             file_of.push_back(file);
         }
+        for (const std::string& words : of_file) left_out.push_back(printable(file.string()) + ": " + words);
+    }
     tell_apart(parts, file_of);
     return parts;
 }

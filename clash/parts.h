@@ -23,8 +23,9 @@ struct Part : AssemblyPart {
 double smaller_size(const Part& a, const Part& b);
 
 /// The parts of all files, in their order (load_assembly). Where several have the same name, the file is set before it,
-/// or a number is added. Throws InputError as load_mesh().
-std::vector<Part> load_parts(const std::vector<std::filesystem::path>& files);
+/// or a number is added. left_out: gets a line for each thing that was left out or mended, with the file before
+/// it. Throws InputError as load_mesh().
+std::vector<Part> load_parts(const std::vector<std::filesystem::path>& files, std::vector<std::string>& left_out);
 
 /// Two parts whose boxes touch, by their numbers; the first is the lower.
 struct PartPair {

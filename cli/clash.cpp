@@ -19,7 +19,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -83,13 +82,12 @@ std::string json_lines(const Result& result) {
 std::string table(const Result& result) {
     std::string text;
     for (const clash::Clash& c : result.clashes) {
-        const std::string depth = !c.depth ? "no depth" : *c.depth > 0 ? fmt::format("{:.4g} m", *c.depth) : "touching";
+        const std::string depth = !c.depth       ? "no depth"
+                                  : *c.depth > 0 ? fmt::format("{} m", float(*c.depth))
+                                                 : "touching";
         const clash::Part &a = result.parts[c.a], &b = result.parts[c.b];
-        // To some hundred-thousandth of the smaller part, however far from the origin.
-        const int decimals = std::clamp(5 - static_cast<int>(std::floor(std::log10(clash::smaller_size(a, b)))), 0, 15);
-        text += fmt::format("{:>12}  {}  x  {}  at {:.{}f}, {:.{}f}, {:.{}f}{}\n", depth, a.name, b.name, c.point.x,
-                            decimals, c.point.y, decimals, c.point.z, decimals,
-                            c.duplicate ? "  (the same part in the same place)" : "");
+        text += fmt::format("{:>12}  {}  x  {}  at {}, {}, {}{}\n", depth, a.name, b.name, c.point.x, c.point.y,
+                            c.point.z, c.duplicate ? "  (the same part in the same place)" : "");
     }
     return text;
 }
@@ -121,9 +119,13 @@ std::string summary(const Result& result) {
 
 Result search(const ClashOptions& options) {
     Result result;
-    result.parts = clash::load_parts({options.files.begin(), options.files.end()});
+    std::vector<std::string> left_out;
+    result.parts = clash::load_parts({options.files.begin(), options.files.end()}, left_out);
+    for (const std::string& line : left_out) std::cerr << line << '\n';
     if (result.parts.size() < 2)
-        throw InputError(options.files[0] + ": is one part; give several files, or a glTF file whose nodes are parts");
+        throw InputError(
+            options.files[0]
+            + ": is one part; give several files, or one that has parts: nodes, objects, groups or solids");
     const auto pairs = clash::touching_boxes(result.parts);
     result.pairs = pairs.size();
     listen_for_stop();
@@ -187,7 +189,9 @@ void run_clash(const ClashOptions& options) {
 void add_clash(CLI::App& app) {
     CLI::App* command = app.add_subcommand("clash", "Find the parts of an assembly that intersect");
     auto options = std::make_shared<ClashOptions>();
-    command->add_option("FILES", options->files, "mesh files; of a glTF file each node with a mesh is a part")
+    command
+        ->add_option("FILES", options->files,
+                     "mesh files; parts are nodes of glTF, objects or groups of OBJ, solids of a text STL")
         ->required();
     add_number(*command, "--ignore-touching", options->ignore_touching,
                "leave out clashes no deeper than this, metres; 0: those that only touch. Those without a depth stay",

@@ -668,6 +668,26 @@ def test_an_object_with_vertices_and_faces_is_one_mesh_even_if_it_is_a_tuple(tor
     assert rc.Scene().add(pair) == 0
 
 
+def test_what_a_file_leaves_out_is_told(tmp_path):
+    cube = "".join(f"v {x} {y} {z}\n" for z in (0, 1) for y in (0, 1) for x in (0, 1))
+    faces = [(1, 3, 4, 2), (5, 6, 8, 7), (1, 2, 6, 5), (3, 7, 8, 4), (1, 5, 7, 3), (2, 4, 8, 6)]
+    text = ""
+    for k, name in enumerate(("left", "right")):
+        text += f"o {name}\n{cube}" + "".join("f" + "".join(f" {v + 8 * k}" for v in face) + "\n" for face in faces)
+    (tmp_path / "two.obj").write_text(text + "l 1 2\n")
+    said = ["left out 1 line (l)"]
+    with pytest.warns(UserWarning, match=r"two.obj: left out 1 line \(l\)"):
+        parts = rc.load_assembly(tmp_path / "two.obj")
+    assert [part.name for part in parts] == ["left", "right"]
+    with pytest.warns(UserWarning, match="left out 1 line"):
+        assert [(c.a, c.b) for c in rc.clash(tmp_path / "two.obj")] == [("left", "right")]
+    mesh = rc.Mesh(tmp_path / "two.obj")
+    assert mesh.repairs == said
+    assert pickle.loads(pickle.dumps(mesh)).repairs == said
+    assert rc.Mesh(mesh, scale=0.5).repairs == said
+    assert rc.Shape(parts[0].mesh).report.repairs == []
+
+
 def test_scales_reach_files_shapes_assemblies_and_clashes(tmp_path):
     trimesh = pytest.importorskip("trimesh")
     scene = trimesh.Scene()

@@ -99,7 +99,7 @@ def main(arguments: list[str] | None = None) -> int:
     clash = command("clash", _clash, "Find the parts of an assembly that intersect")
     for sub in (mesh, collide, clash):
         sub.add_argument("--scale", type=float, default=1.0, help="multiplies coordinates; 0.001 for millimetres")
-    clash.add_argument("files", nargs="+", metavar="FILE", help="of a glTF file each node with a mesh is a part")
+    clash.add_argument("files", nargs="+", metavar="FILE", help="parts are nodes of glTF, objects or groups of OBJ, solids of a text STL")
     clash.add_argument("--ignore-touching", type=float, metavar="LENGTH", help="leave out clashes no deeper, metres")
     command("devices", _devices, "List the devices that contacts can be found on", checks=False)
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from . import _core
 from ._arrays import as_count, as_length, as_pose
 from ._core import InputError
-from .mesh import Mesh, scaled_parts
+from .mesh import Mesh, scaled_parts, tell
 
 
 class Clash(NamedTuple):
@@ -122,7 +122,7 @@ def clash(
     """
     parts = scaled_parts(_parts_of(assembly), scale)
     if len(parts) < 2:
-        raise InputError(f"clash: {len(parts)} part given; give several, or a glTF file whose nodes are parts")
+        raise InputError(f"clash: {len(parts)} part given; give several, or a file that has parts: nodes, objects, groups or solids")
     names = [part.name for part in parts]
     poses = np.ascontiguousarray(np.stack([part.pose for part in parts]))
     meshes = [part.mesh._core for part in parts]
@@ -149,7 +149,9 @@ def _parts_of(assembly: Any) -> list[tuple[str, _core.Mesh, NDArray[np.float64]]
     if not isinstance(assembly, (list, tuple)) or hasattr(assembly, "faces"):
         raise InputError(f"clash: {type(assembly).__name__} is no file, and no list or dict of files or parts")
     if assembly and all(isinstance(item, (str, os.PathLike)) for item in assembly):
-        return _core.load_parts([os.fspath(file) for file in assembly])
+        parts, left_out = _core.load_parts([os.fspath(file) for file in assembly])
+        tell(left_out)
+        return parts
     made: dict[int, Mesh] = {}
     parts = []
     for i, item in enumerate(assembly):

@@ -126,11 +126,12 @@ void bind_clash(nb::module_& m) {
         "load_parts",
         [](const std::vector<std::filesystem::path>& files) {
             std::vector<Part> parts;
+            std::vector<std::string> left_out;
             {
                 const WithoutGil without_gil;
-                parts = clash::load_parts(files);
+                parts = clash::load_parts(files, left_out);
             }
-            return tuples_of(parts);
+            return nb::make_tuple(tuples_of(parts), left_out);
         },
         "files"_a);
     m.def("find_clashes", &find_clashes, "names"_a, "meshes"_a, "poses"_a, "threads"_a, "progress"_a.none());
