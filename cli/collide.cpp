@@ -152,7 +152,7 @@ void print_table(std::size_t index, const QueryPair& pair, double apart, std::sp
         add(c.feature.other_index());
         for (const float number : {c.depth, c.ray_length}) add(number);
         for (const double number : {c.point().x, c.point().y, c.point().z}) add(number);
-        for (const float number : {c.normal.x, c.normal.y, c.normal.z}) add(number);
+        for (const float number : {c.normal.x, c.normal.y, c.normal.z}) add(number + 0.0f); // no -0
         if (weighted) add(c.weight);
     }
     print_rows(rows);
