@@ -302,7 +302,8 @@ TEST_F(Collide, TwoFilesAndTheTable) {
     EXPECT_NE(table.out.find("\n  a     vertex        6 "), std::string::npos) << table.out;
     const auto edges = run_program({"collide", "cube.obj", "moved.obj"}, folder_.path());
     EXPECT_NE(edges.out.find("\n  a     edges "), std::string::npos) << edges.out;
-    EXPECT_NE(run_vertices(json::array({corner_pair()}), {}).out.find("2 contacts, deepest 0.2"), std::string::npos);
+    EXPECT_NE(run_vertices(json::array({corner_pair()}), {}).out.find("2 contacts, deepest 0.19999999 m"),
+              std::string::npos);
 }
 
 TEST_F(Collide, NoPairsIsNoOutput) {
