@@ -84,12 +84,15 @@ std::vector<AssemblyPart> load_assembly(const std::filesystem::path& path) {
     if (ending != ".gltf" && ending != ".glb") {
         auto mesh = std::make_shared<const Mesh>(load_mesh(path));
         std::string name = mesh->name;
-        return {{std::move(name), std::move(mesh), {}}};
+        return {{std::move(name), std::move(mesh), {}, path.string()}};
     }
     const InputFile file = InputFile::read(path);
     std::vector<AssemblyPart> parts = read_gltf_parts(file);
     if (parts.empty()) check_mesh({}, file.shown);
-    for (const AssemblyPart& part : parts) check_mesh(*part.mesh, file.shown + ": " + part.name);
+    for (AssemblyPart& part : parts) {
+        check_mesh(*part.mesh, file.shown + ": " + part.name);
+        part.file = path.string();
+    }
     return parts;
 }
 

@@ -37,6 +37,7 @@ public:
     std::vector<AssemblyPart> read_parts() {
         std::map<std::string, std::shared_ptr<const Mesh>> known;
         std::vector<AssemblyPart> parts;
+        std::vector<std::size_t> places; // of their nodes
         for_each_placed_mesh([&](const PlacedMesh& placed) {
             if (!is_finite(placed.placement.origin)) fail(placed.node, "is placed where no number is finite");
             const auto [pose, own] = split(placed.placement);
@@ -47,8 +48,17 @@ public:
                 mesh_.name = name_of(placed.node);
                 made = std::make_shared<const Mesh>(std::exchange(mesh_, {}));
             }
-            if (!made->triangles.empty()) parts.push_back({name_of(placed.node), made, pose});
+            if (made->triangles.empty()) return;
+            nodes_[placed.place].part = parts.size();
+            places.push_back(placed.place);
+            parts.push_back({name_of(placed.node), made, pose});
         });
+        for (const std::size_t n : from_roots_) {
+            if (nodes_[n].parent == AssemblyPart::no_part) continue;
+            const Node& parent = nodes_[nodes_[n].parent];
+            nodes_[n].above = parent.part != AssemblyPart::no_part ? parent.part : parent.above;
+        }
+        for (std::size_t i = 0; i < parts.size(); ++i) parts[i].parent = nodes_[places[i]].above;
         return parts;
     }
 
@@ -58,11 +68,15 @@ private:
         bool waits = false; ///< for its parent to be placed
         bool in_scene = false;
         Placement placement; ///< in its parent, then in the scene
+        std::size_t parent = AssemblyPart::no_part; ///< a node
+        std::size_t part = AssemblyPart::no_part;   ///< that it is
+        std::size_t above = AssemblyPart::no_part;  ///< the nearest part that it is under
     };
 
     /// A mesh as a node has it.
     struct PlacedMesh {
         Item node, mesh;
+        std::size_t place;               ///< of the node
         std::size_t number;              ///< of the mesh
         std::optional<std::size_t> skin; ///< which places each vertex by itself
         std::vector<double> weights;     ///< of its morph targets
@@ -85,7 +99,7 @@ private:
             if (!nodes_[n].in_scene) continue;
             primitives += list(mesh, "primitives").size();
             if (primitives > most_primitives) file().fail("places too many primitives; split or reduce it");
-            PlacedMesh placed{node, mesh, number, {}, morph_weights(*this, node, mesh), {}};
+            PlacedMesh placed{node, mesh, n, number, {}, morph_weights(*this, node, mesh), {}};
             count_moves(placed.weights.size());
             if (skin)
                 read_skin(placed.skin.emplace(whole(*skin)));
@@ -176,6 +190,7 @@ private:
                 if (nodes_[child].waits)
                     fail(node, "its child " + std::to_string(child) + " has two parents; nodes must form a tree");
                 nodes_[child].waits = true;
+                nodes_[child].parent = n;
             }
         }
         // The default scene, or the first; all nodes where the file has no scene.
@@ -198,6 +213,7 @@ private:
         for (std::size_t n = 0; n < nodes_.size(); ++n) {
             if (nodes_[n].waits) fail(item("nodes", n), "is its own ancestor; nodes must form a tree");
         }
+        from_roots_ = std::move(order);
     }
 
     Placement own_placement(const Item& node) const {
@@ -320,6 +336,7 @@ private:
     }
 
     std::vector<Node> nodes_;
+    std::vector<std::size_t> from_roots_; ///< nodes, each after its parent
     std::map<std::size_t, GltfSkin> skins_; ///< that were read
     std::size_t moves_ = 0;                 ///< steps of morph targets and skins
     std::set<double> scales_;               ///< of parts
