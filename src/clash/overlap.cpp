@@ -95,9 +95,7 @@ Overlap overlap_of(const Part& a, const Part& b) {
     const Loops loops = loops_of(meshes, ShapePair(*a.shape, a.pose, *b.shape, b.pose));
     Overlap overlap;
     overlap.crosses = !loops.crossings().empty();
-    if (std::ranges::none_of(loops.crossings(), [&](const Crossing& c) { return is_clear(meshes, c); }))
-        overlap.inside =
-            lies_in(pair, !overlap.crosses) || lies_in(ShapePair(*b.shape, b.pose, *a.shape, a.pose), !overlap.crosses);
+    overlap.inside = lies_in(a, b, overlap.crosses) || lies_in(b, a, overlap.crosses);
     const bool solid = a.shape->has_inside() && b.shape->has_inside();
     if (!overlap.inside && solid && std::ranges::all_of(loops.loops(), &Loop::is_closed))
         overlap.pierces = falls_apart(meshes, loops, 0) || falls_apart(meshes, loops, 1);

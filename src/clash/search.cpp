@@ -243,7 +243,7 @@ std::vector<Answer> search(const std::vector<Part>& parts, std::span<const PartP
 void check_options(const ClashOptions& options) {
     const auto check = [](double length, const char* what) {
         if (!(length >= 0 && std::isfinite(length)))
-            throw InputError(std::string("clash: ") + what + " is no length; give a finite number of at least 0");
+            throw InputError(std::string("clash: the ") + what + " is no length; give a finite number of at least 0");
     };
     check(options.clearance, "clearance");
     check(options.tolerance, "tolerance");
