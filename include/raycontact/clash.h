@@ -63,9 +63,9 @@ struct Clash {
 struct ClashOptions {
     /// Patterns of names of parts or files ("*" stands for any text, "?" for a character). Parts that match are tested
     /// against all that do not. Empty: all against all.
-    std::vector<std::string> against;
+    std::vector<std::string> against{};
     /// Pairs of such patterns: parts of which one matches either are not tested against each other.
-    std::vector<std::array<std::string, 2>> exclude;
+    std::vector<std::array<std::string, 2>> exclude{};
     bool exclude_parent_child = false; ///< leaves out pairs of a part and its AssemblyPart::parent
     double clearance = 0;              ///< metres; pairs not farther apart are `near`
     double tolerance = 0;              ///< metres; depths and gaps up to it are `touching`
