@@ -17,7 +17,7 @@ pytestmark = pytest.mark.skipif(
     "RAYCONTACT_PROGRAM" not in os.environ, reason="RAYCONTACT_PROGRAM does not name the program"
 )
 SCHEMAS = pathlib.Path(bcf_api_xml.__file__).parent / "Schemas"
-NAMES = ['a <&>"\'.obj', "zwölf ½.obj", "c.obj", "d.obj"]
+NAMES = ["a <&>\"'.obj", "zwölf ½.obj", "c.obj", "d.obj"]
 
 
 def write(folder, name, centre, size=1.0):

@@ -104,8 +104,8 @@ def main(arguments: list[str] | None = None) -> int:
     for sub in (mesh, collide, clash):
         sub.add_argument("--scale", type=float, default=1.0, help="multiplies coordinates; 0.001 for millimetres")
     clash.add_argument("files", nargs="+", metavar="FILE", help="of a glTF file each node with a mesh is a part")
-    clash.add_argument("--against", action="append", metavar="SET", help="test these (* and ?) against all others alone")
-    clash.add_argument("--clearance", type=float, default=0.0, metavar="LENGTH", help="also find parts that are so near")
+    clash.add_argument("--against", action="append", metavar="SET", help="test these (* and ?) against all others")
+    clash.add_argument("--clearance", type=float, default=0.0, metavar="LENGTH", help="also find those so near")
     clash.add_argument("--tolerance", type=float, default=0.0, metavar="LENGTH", help="up to this they are touching")
     clash.add_argument("--ignore-touching", type=float, metavar="LENGTH", help="leave out clashes no deeper, metres")
     command("devices", _devices, "List the devices that contacts can be found on", checks=False)

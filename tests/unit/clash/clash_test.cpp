@@ -192,8 +192,8 @@ TEST(Clash, PiercingPartsFallApart) {
         solid("u", [](int x, int y, int z) { return x == 0 || x == 3 ? z < 6 : x < 3 && y < 8 && z == 0; });
     EXPECT_EQ(kind_of(two_walls, box("pin", {-1, 1.25, 3.25}, {5, 1.5, 3.5})), "piercing") << "through both";
     EXPECT_EQ(kind_of(two_walls, box("pin", {-1, 1.25, 3.25}, {3.5, 1.5, 3.5})), "piercing") << "through one";
-    EXPECT_EQ(kind_of(two_walls, box("bridge", {0.5, 1.25, 3.25}, {3.5, 1.5, 3.5})), "piercing")
-        << "its ends are in the walls, its middle is not";
+    EXPECT_EQ(kind_of(two_walls, box("bridge", {0.5, 1.25, 3.25}, {3.5, 1.5, 3.5})), "overlapping")
+        << "its ends are in the walls: what is left of either is in one piece";
     EXPECT_EQ(kind_of(two_walls, box("peg", {0.5, 1.25, 3.25}, {2.5, 1.5, 3.5})), "overlapping");
     // Two solids of one part, one of which is cut.
     const auto pair = solid("two bars", [](int x, int, int z) { return z == 0 && (x == 0 || x == 2); });
