@@ -89,12 +89,11 @@ private:
     }
 
     std::span<const std::uint32_t> crossings_of(std::size_t side, std::uint32_t edge) const {
-        const auto found =
-            std::ranges::equal_range(by_edge_, std::pair(std::uint32_t(side), edge), {}, [&](std::uint32_t i) {
-                const Crossing& c = loops_.crossings()[i];
-                return std::pair(c.side, c.edge);
-            });
-        return {found.begin(), found.end()};
+        const std::pair sought(std::uint32_t(side), edge);
+        const auto of = [&](std::uint32_t i) {
+            return std::pair(loops_.crossings()[i].side, loops_.crossings()[i].edge);
+        };
+        return {std::ranges::lower_bound(by_edge_, sought, {}, of), std::ranges::upper_bound(by_edge_, sought, {}, of)};
     }
 
     /// Of the interval of an edge before its k-th crossing; of none: what an edge without crossings has.
