@@ -23,11 +23,9 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <map>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -109,15 +107,6 @@ std::string json_lines(const Result& result, const Options& options) {
     return text;
 }
 
-double size_of(const Mesh& mesh) {
-    Vec3 low = mesh.vertices.front(), high = low;
-    for (const Vec3& v : mesh.vertices) {
-        low = {std::min(low.x, v.x), std::min(low.y, v.y), std::min(low.z, v.z)};
-        high = {std::max(high.x, v.x), std::max(high.y, v.y), std::max(high.z, v.z)};
-    }
-    return std::hypot(high.x - low.x, high.y - low.y, high.z - low.z);
-}
-
 std::string note_of(const Clash& c) {
     std::string note = c.kind == ClashKind::duplicate  ? "the same part in the same place"
                        : c.kind == ClashKind::inside   ? "one inside the other"
@@ -131,24 +120,14 @@ std::string note_of(const Clash& c) {
 }
 
 std::string table(const Result& result, const char* unit) {
-    std::map<const Mesh*, double> sizes;
-    const auto size = [&](const AssemblyPart& part) {
-        const auto [at, is_new] = sizes.try_emplace(part.mesh.get(), 0.0);
-        if (is_new) at->second = size_of(*part.mesh);
-        return at->second;
-    };
     std::string text;
     for (const Clash& c : result.report.clashes) {
-        const std::string depth = c.kind == ClashKind::near ? fmt::format("{:.4g} {} apart", c.distance, unit)
+        const std::string depth = c.kind == ClashKind::near ? fmt::format("{} {} apart", c.distance, unit)
                                   : !c.depth                ? "no depth"
-                                  : *c.depth > 0            ? fmt::format("{:.4g} {}", *c.depth, unit)
+                                  : *c.depth > 0            ? fmt::format("{} {}", float(*c.depth), unit)
                                                             : "touching";
-        const AssemblyPart &a = result.parts[c.a], &b = result.parts[c.b];
-        // To some hundred-thousandth of the smaller part, however far from the origin.
-        const int decimals =
-            std::clamp(5 - static_cast<int>(std::floor(std::log10(std::min(size(a), size(b))))), 0, 15);
-        text += fmt::format("{:>12}  {}  x  {}  at {:.{}f}, {:.{}f}, {:.{}f}{}\n", depth, a.name, b.name, c.point.x,
-                            decimals, c.point.y, decimals, c.point.z, decimals, note_of(c));
+        text += fmt::format("{:>12}  {}  x  {}  at {}, {}, {}{}\n", depth, result.parts[c.a].name,
+                            result.parts[c.b].name, c.point.x, c.point.y, c.point.z, note_of(c));
     }
     return text;
 }
@@ -225,9 +204,13 @@ Result search(const Options& options) {
     how.volumes = options.volume;
     how.threads = options.threads;
     Result result;
-    result.parts = load_parts({options.files.begin(), options.files.end()});
+    std::vector<std::string> left_out;
+    result.parts = load_parts({options.files.begin(), options.files.end()}, &left_out);
+    for (const std::string& line : left_out) std::cerr << line << '\n';
     if (result.parts.size() < 2)
-        throw InputError(options.files[0] + ": is one part; give several files, or a glTF file whose nodes are parts");
+        throw InputError(
+            options.files[0]
+            + ": is one part; give several files, or one that has parts: nodes, objects, groups or solids");
     listen_for_stop();
     how.stop = [] { return stop_signal() != 0; };
     Progress progress("clash", 1000, "");
@@ -293,7 +276,9 @@ void add_clash(CLI::App& app) {
     CLI::App* command = app.add_subcommand("clash", "Find the parts of an assembly that intersect, or are too near");
     auto options = std::make_shared<Options>();
     constexpr double most = 1e9;
-    command->add_option("FILES", options->files, "mesh files; of a glTF file each node with a mesh is a part")
+    command
+        ->add_option("FILES", options->files,
+                     "mesh files; parts are nodes of glTF, objects or groups of OBJ, solids of a text STL")
         ->required();
     // One word each, so that FILES may follow.
     command

@@ -111,10 +111,24 @@ void print_json(std::size_t index, double apart, std::span<const Contact> contac
     std::cout << line.dump() << '\n';
 }
 
+/// Columns as wide as their longest text, to the right but for the first two.
+void print_rows(const std::vector<std::vector<std::string>>& rows) {
+    std::vector<std::size_t> widths(rows[0].size(), 0);
+    for (const auto& row : rows)
+        for (std::size_t k = 0; k < row.size(); ++k) widths[k] = std::max(widths[k], row[k].size());
+    for (const auto& row : rows) {
+        for (std::size_t k = 0; k < row.size(); ++k)
+            std::cout << (k < 2 ? fmt::format("  {:<{}}", row[k], widths[k])
+                                : fmt::format("  {:>{}}", row[k], widths[k]));
+        std::cout << '\n';
+    }
+}
+
+/// Numbers in full: six digits are metres where coordinates are of a country's map.
 void print_table(std::size_t index, const QueryPair& pair, double apart, std::span<const Contact> contacts,
                  bool weighted) {
     const bool intersecting = apart == 0;
-    const std::string distance = fmt::format("apart by {:.6g} m", apart);
+    const std::string distance = fmt::format("apart by {} m", apart);
     std::cout << fmt::format("pair {}: {} and {}: ", index, pair[0].file.string(), pair[1].file.string());
     if (contacts.empty()) {
         std::cout << (intersecting ? "intersecting, 0 contacts (touching, or no rule of contact applies)" : distance)
@@ -123,21 +137,25 @@ void print_table(std::size_t index, const QueryPair& pair, double apart, std::sp
     }
     const auto deepest = std::max_element(contacts.begin(), contacts.end(),
                                           [](const Contact& p, const Contact& q) { return p.depth < q.depth; });
-    std::cout << fmt::format("{}, {} contact{}{}, deepest {:.6g} m\n", intersecting ? "intersecting" : distance,
+    std::cout << fmt::format("{}, {} contact{}{}, deepest {} m\n", intersecting ? "intersecting" : distance,
                              contacts.size(), contacts.size() == 1 ? "" : "s",
                              intersecting ? "" : " of open meshes, each behind the other", deepest->depth);
-    const auto weight = [&](const auto& text) { return weighted ? fmt::format(" {:>12}", text) : ""; };
-    std::cout << fmt::format("  {:<4} {:<7} {:>8} {:>8}  {:>12} {:>12}{}  {:<38}  {}\n", "body", "feature", "number",
-                             "triangle", "depth (m)", "ray (m)", weight("weight (m^2)"), "point (m)",
-                             "normal from a to b");
+    std::vector<std::vector<std::string>> rows{{"body", "feature", "number", "triangle", "depth (m)", "ray (m)",
+                                                "x (m)", "y (m)", "z (m)", "normal x", "normal y", "normal z"}};
+    if (weighted) rows[0].emplace_back("weight (m^2)");
     for (const Contact& c : contacts) {
-        std::cout << fmt::format("  {:<4} {:<7} {:>8} {:>8}  {:>12.6g} {:>12.6g}{}  {:>12.6g} {:>12.6g} {:>12.6g}  "
-                                 "{:>9.6f} {:>9.6f} {:>9.6f}\n",
-                                 c.feature.source == Side::a ? "a" : "b", name_of(c.feature.kind),
-                                 c.feature.source_index(), c.feature.other_index(), c.depth, c.ray_length,
-                                 weight(fmt::format("{:.6g}", c.weight)), c.point().x, c.point().y, c.point().z,
-                                 c.normal.x, c.normal.y, c.normal.z);
+        std::vector<std::string>& row = rows.emplace_back();
+        const auto add = [&](auto value) { row.push_back(fmt::format("{}", value)); };
+        add(c.feature.source == Side::a ? "a" : "b");
+        add(name_of(c.feature.kind));
+        add(c.feature.source_index());
+        add(c.feature.other_index());
+        for (const float number : {c.depth, c.ray_length}) add(number);
+        for (const double number : {c.point().x, c.point().y, c.point().z}) add(number);
+        for (const float number : {c.normal.x, c.normal.y, c.normal.z}) add(number);
+        if (weighted) add(c.weight);
     }
+    print_rows(rows);
 }
 
 /// Bodies 2i and 2i + 1 are a and b of pair i, so a is always the lower one. One batch is one step; its size bounds

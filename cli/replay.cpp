@@ -109,7 +109,7 @@ std::string for_a_person(const Json& s) {
         "{}: {}, {}, seed {}\n"
         "pairs      {} at most\n"
         "rays       {}, of them {} contacts, {:.1f} m in all\n"
-        "depth      {:.4f} m at most\n"
+        "depth      {} m at most\n"
         "time       {:.1f} s; step {:.2f} ms median, {:.2f} ms p95; narrow phase {:.2f} ms median\n",
         s["scene"].get<std::string>(), report::counted(s["bodies"].get<std::uint64_t>(), "body", "bodies"),
         report::counted(s["steps"].get<std::uint64_t>(), "step", "steps"), s["seed"].get<std::uint64_t>(),

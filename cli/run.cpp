@@ -23,6 +23,7 @@
 #include <algorithm>
 #include <cctype>
 #include <chrono>
+#include <cmath>
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -110,7 +111,7 @@ std::string for_a_person(const Json& s) {
         "{}: {}, {}, seed {}; {}\n"
         "pairs      {} at most, {} in the last second\n"
         "rays       {}, of them {} contacts, {:.1f} m in all\n"
-        "depth      {:.4f} m at most, {:.4f} m in the last second\n"
+        "depth      {} m at most, {} m in the last second\n"
         "speed      median {:.4f} m/s in the last second; {}\n"
         "time       {:.1f} s; step {:.2f} ms median, {:.2f} ms p95; narrow phase {:.2f} ms median, {:.2f} ms in the "
         "last second\n",
@@ -201,6 +202,31 @@ void write_files(raycontact::output::OutFolder& folder, const RunLog& log, std::
     std::cerr << fmt::format("report: {}, made in {:.1f} s\n", folder.kept("report.html").string(), seconds.count());
 }
 
+/// Bodies pass an open mesh that come from behind its faces, and one whose faces disagree anywhere.
+void warn_if_open(const SceneDescription& scene, const BodyStart& body) {
+    const raycontact::Shape& shape = *scene.shapes[body.shape].shape;
+    const raycontact::MeshReport& report = shape.report();
+    if (report.closed && report.oriented) return;
+    std::string what = "badly wound: faces at an edge disagree on which side is out; turn some over";
+    if (!report.closed) {
+        what = fmt::format("open, with {}: bodies that come from behind its faces pass it",
+                           counted(report.border_edges, "border edge", "border edges"));
+        // Areas that face the way of gravity, and against it; in the body's frame.
+        const auto vector = [](const raycontact::Vec3& p, const raycontact::Vec3& from) {
+            return btVector3(btScalar(p.x - from.x), btScalar(p.y - from.y), btScalar(p.z - from.z));
+        };
+        const btVector3 gravity = vector(scene.gravity, {}) * body.pose.getBasis();
+        const auto place = shape.vertices();
+        double down = 0, up = 0;
+        for (const auto& [a, b, c] : shape.triangles()) {
+            const double along = vector(place[b], place[a]).cross(vector(place[c], place[a])).dot(gravity);
+            (along > 0 ? down : up) += std::fabs(along);
+        }
+        if (down > 2 * up) what += "; its faces look down, so what falls on it falls through: turn them over";
+    }
+    std::cerr << fmt::format("{}: stands still and is {}\n", shape.name(), what);
+}
+
 void run(const RunOptions& options) {
     check_common_options(options.settings);
     Outputs outputs(options);
@@ -209,9 +235,12 @@ void run(const RunOptions& options) {
     if (!options.out.empty()) described.frames = std::max(raycontact::report::film_frames, options.pictures);
     Simulation scene(std::move(described));
     const SceneDescription& description = scene.description();
-    std::set<std::uint32_t> moving;
+    std::set<std::uint32_t> moving, still;
     for (const BodyStart& body : description.bodies)
-        if (body.density > 0) moving.insert(body.shape);
+        if (body.density > 0)
+            moving.insert(body.shape);
+        else if (still.insert(body.shape).second)
+            warn_if_open(description, body);
     for (const std::uint32_t shape : moving) warn_if_coarse(*description.shapes[shape].shape, options.settings);
     RunRecorder recorder(std::move(outputs.recording), scene);
     Progress progress(description.name, description.steps);

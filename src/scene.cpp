@@ -2,7 +2,7 @@
 #include <raycontact/scene.h>
 
 #include "body_slots.h"
-#include "broadphase/sweep_and_prune.h"
+#include "broadphase/broad_phase.h"
 #include "contacts/predictions.h"
 #include "executor/float_environment.h"
 #include "narrow_phase.h"
@@ -90,10 +90,12 @@ struct Scene::State {
     void place_bodies() {
         pack_shapes();
         accelerate_shapes();
-        for (PlacedBody& body : bodies)
-            if (body.shape != nullptr) body.centred = centred_pose(*body.shape, body.pose);
-        for (std::size_t i = 0; i < next.size(); ++i)
-            if (bodies[i].shape != nullptr) bodies[i].next = centred_pose(*bodies[i].shape, next[i]);
+        narrow.parts().executor().each(bodies.size(), 1024, [&](BodySlot i) {
+            PlacedBody& body = bodies[i];
+            if (body.shape == nullptr) return;
+            body.centred = centred_pose(*body.shape, body.pose);
+            if (!next.empty()) body.next = centred_pose(*body.shape, next[i]);
+        });
     }
 
     // All shapes must be the same each time a run repeats, where contacts depend on what follows rays.
@@ -133,9 +135,13 @@ struct Scene::State {
         float reach = 0;
         for (const PlacedBody& body : bodies)
             if (body.shape != nullptr) reach = std::max(reach, body.shape->data().header.ray_reach);
-        boxes.clear();
-        for (BodySlot i = 0; i < bodies.size(); ++i) {
-            if (bodies[i].shape == nullptr) continue;
+        std::atomic<bool> same = pairs_stand && pairs_found && boxes.size() == bodies.size();
+        boxes.resize(bodies.size());
+        narrow.parts().executor().each(bodies.size(), 256, [&](BodySlot i) {
+            if (bodies[i].shape == nullptr) {
+                boxes[i] = {{}, i};
+                return;
+            }
             const Shape& shape = *bodies[i].shape;
             const bool open = !shape.has_inside();
             // What two boxes are wider by is at least the margin of their pair.
@@ -144,16 +150,22 @@ struct Scene::State {
             const auto box_at = [&](const Pose& pose) {
                 return world_box({shape.box_min(), shape.box_max()}, pose, (open ? double(reach) : 0) + near);
             };
-            boxes.push_back({box_at(bodies[i].pose), i});
-            if (!next.empty()) boxes.back().add(box_at(next[i]));
-        }
+            WorldBox box{box_at(bodies[i].pose), i};
+            if (!next.empty()) box.add(box_at(next[i]));
+            if (box == boxes[i]) return;
+            boxes[i] = box;
+            same.store(false, std::memory_order_relaxed);
+        });
+        if (same) return; // so the pairs are those of the last step
+        if (slots.count() < bodies.size())
+            std::erase_if(boxes, [&](const WorldBox& box) { return bodies[box.body].shape == nullptr; });
         pairs_stand = false;
-        sweep_and_prune(boxes, slot_pairs);
+        broad_phase.find(narrow.parts().executor(), boxes, slot_pairs);
         std::erase_if(slot_pairs,
                       [&](const SlotPair& pair) { return !may_meet(notes[pair.first], notes[pair.second]); });
         pairs.clear();
         for (const auto& [a, b] : slot_pairs) pairs.emplace_back(slots.id_in(a), slots.id_in(b));
-        pairs_stand = true;
+        pairs_stand = pairs_found = true;
     }
 
     void check_pair(const Pair& pair, std::size_t i) const {
@@ -170,7 +182,7 @@ struct Scene::State {
         const bool same = std::equal(given.begin(), given.end(), pairs.begin(), pairs.end());
         if (same && pairs_stand) return; // an earlier step has checked them
         for (const Pair& pair : given) check_pair(pair, static_cast<std::size_t>(&pair - given.data()));
-        pairs_stand = false;
+        pairs_stand = pairs_found = false;
         if (!same) pairs.assign(given.begin(), given.end()); // given may be this very list
         for (Pair& pair : pairs)
             if (pair.first.slot > pair.second.slot) std::swap(pair.first, pair.second);
@@ -214,6 +226,7 @@ struct Scene::State {
 
     void trim() {
         boxes.shrink_to_fit();
+        broad_phase.trim();
         pairs.shrink_to_fit();
         slot_pairs.shrink_to_fit();
     }
@@ -235,6 +248,7 @@ struct Scene::State {
     NextPoses next_poses;
     std::span<const Pose> next; ///< of this step; empty without speculative contacts
     std::vector<WorldBox> boxes;
+    BroadPhase broad_phase;
     std::vector<Pair> pairs;
     std::vector<SlotPair> slot_pairs; ///< the same pairs, by slot
     std::shared_ptr<std::vector<Contact>> contacts = std::make_shared<std::vector<Contact>>();
@@ -243,6 +257,7 @@ struct Scene::State {
     std::unordered_map<const Shape*, std::uint64_t> met_shapes; ///< those not prepared: the step that first met them
     std::uint64_t steps_met = 0;
     bool pairs_stand = false; ///< both lists are whole, and no body has been removed since
+    bool pairs_found = false; ///< they are those of `boxes`, by the filters as they are
     Preparer preparer;        ///< last: it ends first
 };
 
@@ -354,6 +369,7 @@ void Scene::set_filter(BodyId body, std::uint32_t groups, std::uint32_t mask) {
     state_->existing(body, "Scene::set_filter");
     state_->notes[body.slot].groups = groups;
     state_->notes[body.slot].mask = mask;
+    state_->pairs_found = false;
 }
 
 bool Scene::has(BodyId body) const noexcept {

@@ -2,7 +2,7 @@
 // Runs steps of each method on fixed inputs, and what the host does beside, for callgrind to count instructions;
 // scripts/instructions reads what is printed: the compiler, then a line `kernel,input,items` for each count. Everything
 // is done once beforehand, so that no array has to grow while it counts.
-#include "broadphase/sweep_and_prune.h"
+#include "broadphase/broad_phase.h"
 #include "contacts/place.h"
 #include "device/cpu/device.h"
 #include "device/forwarding.h"
@@ -261,12 +261,8 @@ void count_all() {
                [&] { placer.run(executor, Direction::reprojected, small.steps[0], small.pairs, local, placed); });
 
     const std::vector<WorldBox> boxes = make_boxes(4096);
-    std::vector<WorldBox> sorted;
     std::vector<SlotPair> pairs;
-    count_host("sweep,boxes", boxes.size(), [&] {
-        sorted = boxes;
-        sweep_and_prune(sorted, pairs);
-    });
+    count_host("broad_phase,boxes", boxes.size(), [&] { BroadPhase().find(executor, boxes, pairs); });
     count_host("make_shape,knot", small.mesh.triangles.size(), [&] { Shape::make(small.mesh); });
     const auto made = Shape::make(small.mesh);
     Executor one_thread(1);

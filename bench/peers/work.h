@@ -36,7 +36,7 @@ struct AvalancheWorkOptions {
     std::uint64_t seed = 1;
 };
 
-/// Steps of the scene avalanche, simulated here and now; its pairs by our own sweep and prune.
+/// Steps of the scene avalanche, simulated here and now; its pairs by our own broad phase.
 Work avalanche_work(const AvalancheWorkOptions& options);
 
 /// The same steps of a recording of any scene, with the pairs that it holds; `bodies` is not looked at. Throws

@@ -38,6 +38,12 @@ def knot(p, q, around=75, across=6, tube=0.28):
     return vertices, faces
 
 
+def sized(mesh):
+    """Vertices and triangles, as a knot is: some 2 in size, about the origin."""
+    low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
+    return (mesh.vertices - (low + high) / 2) * (2 / (high - low).max()), mesh.triangles
+
+
 def shallow_poses(a, b, n, rng, depth):
     """Poses of b that reach into a by about `depth`: it comes from a random side until they touch, then goes on."""
     q = rng.normal(size=(n, 4))
@@ -149,12 +155,13 @@ def main():
     parser.add_argument("--peer-pairs", type=int, default=500, help="of these, as many for peers, which take longer")
     parser.add_argument("--runs", type=int, default=3)
     parser.add_argument(
-        "--depth", type=float, default=0.03, help="how far they reach into each other, of a size of 2.9"
+        "--depth", type=float, default=0.03, help="how far they reach into each other, of a size of 2 to 3"
     )
+    parser.add_argument("--mesh", help="a file: pairs of it, its box 2 wide; else two torus knots of 900 triangles")
     parser.add_argument("--threads", type=int, default=1, help="of raycontact; 0: one per core")
     options = parser.parse_args()
 
-    meshes = [knot(2, 3), knot(3, 4)]
+    meshes = 2 * [sized(rc.Mesh(options.mesh))] if options.mesh else [knot(2, 3), knot(3, 4)]
     a, b = (rc.Shape(rc.Mesh(*mesh)) for mesh in meshes)
     rng = np.random.default_rng(20)
     touching = shallow_poses(a, b, options.pairs, rng, options.depth)

@@ -87,8 +87,10 @@ struct ClashReport {
 };
 
 /// The parts of all files, in their order (load_assembly), under names that differ: where several have the same, the
-/// file is set before it, or a number is added. Throws InputError as load_mesh().
-RAYCONTACT_API std::vector<AssemblyPart> load_parts(const std::vector<std::filesystem::path>& files);
+/// file is set before it, or a number is added. left_out: gets a line for each thing that was left out or mended, with
+/// the file before it. Throws InputError as load_mesh().
+RAYCONTACT_API std::vector<AssemblyPart> load_parts(const std::vector<std::filesystem::path>& files,
+                                                    std::vector<std::string>* left_out = nullptr);
 
 /// Every pair of parts that shares a point (exactly, as intersects()) or is near. Depths are those of collide(); where
 /// faces coincide, so that rounding would decide, small moves tell touching parts from others. Throws InputError for

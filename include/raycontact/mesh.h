@@ -15,19 +15,21 @@
 namespace raycontact {
 
 /// Triangles as a file gives them: nothing welded, nothing repaired, 0-based indices in the file's own order
-/// (OBJ `v` order; STL 3 x facet + corner; PLY and OFF order; glTF in node order). A polygon of n corners is n - 2
-/// triangles: the fan of its first corner where that is right, as it is for convex ones; else ears are cut off it, seen
-/// along the axis closest to its normal. One that crosses itself or has no area stays a fan.
+/// (OBJ `v` order; STL 3 x facet + corner; PLY and OFF order; glTF in node order). Unused vertices that are not finite
+/// lie where a used one does. A polygon of n corners is n - 2 triangles: the fan of its first corner where that is
+/// right, as it is for convex ones; else ears are cut off it, seen along the axis closest to its normal. One that
+/// crosses itself or has no area stays a fan.
 struct Mesh {
     std::string name;                                    ///< for messages; the file name when loaded
     std::vector<Vec3> vertices;                          ///< metres, body frame
     std::vector<std::array<std::uint32_t, 3>> triangles; ///< counter-clockwise seen from outside
+    std::vector<std::string> repairs = {};               ///< what reading left out or mended, in words with counts
 };
 
 /// Reads OBJ, STL (ASCII and binary), PLY (ASCII and binary), OFF, glTF or GLB; the format is told by the ending
 /// (any case). Throws InputError naming the file, and the line or element where one is to blame, for: another ending, a
 /// missing, unreadable, truncated or damaged file, a folder, what is not read of a format (as compressed glTF), no
-/// triangles or more than 715 827 881, an index out of range, a coordinate not finite.
+/// triangles or more than 715 827 881, an index out of range, a coordinate not finite of a vertex that a triangle uses.
 RAYCONTACT_API Mesh load_mesh(const std::filesystem::path& file);
 
 /// How the bytes of a mesh file are read; each format in all the kinds that the load_mesh() of a file reads.
@@ -64,7 +66,7 @@ struct MeshReport {
     double area = 0;                  ///< m^2
     Vec3 box_min;                     ///< least coordinates, body frame, metres
     Vec3 box_max;                     ///< greatest coordinates, body frame, metres
-    std::vector<std::string> repairs; ///< in words with counts; empty when nothing was changed
+    std::vector<std::string> repairs; ///< with those of the Mesh, in words with counts; empty: nothing was changed
 };
 
 /// Whether prepare_mesh may change anything beyond welding for connectivity.

@@ -95,7 +95,7 @@ public:
     /// std::runtime_error where the last device fails.
     void prepare();
 
-    /// Finds the pairs whose boxes overlap (our sweep and prune) and then their contacts. Throws std::runtime_error
+    /// Finds the pairs whose boxes overlap (our own broad phase) and then their contacts. Throws std::runtime_error
     /// where the last device fails, and InputError for a step too large for 32 bits (2^31 pairs, 2^32 rays). It then
     /// has no contacts, and the next step begins anew.
     std::span<const Contact> find_contacts();

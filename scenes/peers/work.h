@@ -37,7 +37,7 @@ void place(Scene& scene, const WorkStep& step);
 /// Before a run over the steps of a work: the scene keeps nothing, as if it had never moved; its arrays stay.
 void rest(Scene& scene, const WorkStep& first);
 
-/// Fills in the pairs whose world boxes overlap, by our own sweep and prune: the same list for everyone.
+/// Fills in the pairs whose world boxes overlap, by our own broad phase: the same list for everyone.
 void find_pairs(Work& work);
 
 } // namespace raycontact::peers

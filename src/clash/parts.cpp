@@ -3,6 +3,7 @@
 
 #include "executor/executor.h"
 #include "mesh/measure.h"
+#include "printable.h"
 
 #include <raycontact/error.h>
 
@@ -42,14 +43,18 @@ void tell_apart(std::vector<AssemblyPart>& parts) {
 
 } // namespace
 
-std::vector<AssemblyPart> load_parts(const std::vector<std::filesystem::path>& files) {
+std::vector<AssemblyPart> load_parts(const std::vector<std::filesystem::path>& files,
+                                     std::vector<std::string>* left_out) {
     std::vector<AssemblyPart> parts;
     for (const std::filesystem::path& file : files) {
         const std::size_t first = parts.size();
-        for (AssemblyPart& part : load_assembly(file)) {
+        std::vector<std::string> of_file;
+        for (AssemblyPart& part : load_assembly(file, &of_file)) {
             if (part.parent != AssemblyPart::no_part) part.parent += first;
             parts.push_back(std::move(part));
         }
+        if (left_out != nullptr)
+            for (const std::string& words : of_file) left_out->push_back(printable(file.string()) + ": " + words);
     }
     tell_apart(parts);
     return parts;
@@ -119,7 +124,8 @@ std::vector<PartPair> near_boxes(const std::vector<Part>& parts, double reach) {
         box.high = box.high + half;
     }
     std::vector<SlotPair> found;
-    sweep_and_prune(grown, found);
+    Executor executor(boxes.size() < 1000 ? 1 : 0);
+    BroadPhase().find(executor, grown, found);
     std::vector<PartPair> pairs;
     pairs.reserve(found.size());
     for (const auto& [a, b] : found) pairs.push_back({a, b, !boxes[a].touches(boxes[b])});

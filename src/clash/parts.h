@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "broadphase/sweep_and_prune.h"
+#include "broadphase/broad_phase.h"
 
 #include <raycontact/clash.h>
 

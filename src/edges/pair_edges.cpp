@@ -188,17 +188,21 @@ void PairEdges::join_regions(const PairMeshes& pair) {
 
 // Vertices in contact with their neighbours, over edges that stay in the other body.
 void PairEdges::join_vertices(const PairMeshes& pair) {
+    for (std::size_t side = 0; side < 2; ++side)
+        if (node_at_[side].size() < pair.shape(side).points.size())
+            node_at_[side].resize(pair.shape(side).points.size(), NONE);
+    for (const VertexContact& contact : in_contact_) node_at_[contact.side()][contact.number()] = node_of(contact);
     for (const VertexContact& contact : in_contact_) {
-        const std::size_t side = contact.vertex >> 32;
-        const auto own = static_cast<std::uint32_t>(contact.vertex);
+        const std::size_t side = contact.side();
+        const std::uint32_t own = contact.number();
         const ShapeData& shape = pair.shape(side);
         const auto join = [&](std::uint32_t other) {
-            if (other < own) return; // joined there
+            const std::uint32_t node = node_at_[side][other];
+            if (other < own || node == NONE) return; // below: joined there
+            if (sets_.of(node) == sets_.of(node_of(contact))) return;
             const std::uint64_t vertex = std::uint64_t{side} << 32 | other;
-            const auto at = std::ranges::lower_bound(in_contact_, vertex, {}, &VertexContact::vertex);
-            if (at == in_contact_.end() || at->vertex != vertex) return;
             if (!std::binary_search(crossed_.begin(), crossed_.end(), std::array{contact.vertex, vertex}))
-                sets_.join(node_of(*at), node_of(contact));
+                sets_.join(node, node_of(contact));
         };
         // Around the vertex; where a border ends that, the other way round, too.
         const std::uint32_t begin = shape.vertex_triangle[own];
@@ -207,15 +211,17 @@ void PairEdges::join_vertices(const PairMeshes& pair) {
             for (int count = 0; count < most_triangles_around && t != NONE; ++count) {
                 const auto& corners = shape.mesh.triangles[t];
                 const std::size_t c = corners[0] == own ? 0 : corners[1] == own ? 1 : 2;
-                join(corners[(c + 1) % 3]);
-                join(corners[(c + 2) % 3]);
-                t = shape.neighbours[t][(c + way) % 3];
+                join(corners[(c + (way == 0 ? 2 : 1)) % 3]); // the other corner is the next triangle's, or a border's
+                const std::uint32_t next = shape.neighbours[t][(c + way) % 3];
+                if (next == NONE) join(corners[(c + (way == 0 ? 1 : 2)) % 3]);
+                t = next;
                 if (t == begin) break;
             }
             if (t != NONE) break;
             t = begin;
         }
     }
+    for (const VertexContact& contact : in_contact_) node_at_[contact.side()][contact.number()] = NONE;
 }
 
 // Keeps the order within a region.

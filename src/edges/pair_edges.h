@@ -24,6 +24,8 @@ private:
     struct VertexContact {
         std::uint64_t vertex; ///< side in the upper half
         double depth;
+        std::size_t side() const { return vertex >> 32; }
+        std::uint32_t number() const { return static_cast<std::uint32_t>(vertex); }
     };
     /// A part of an edge inside the other body, from a crossing or the edge's end to the next.
     struct Piece {
@@ -100,8 +102,9 @@ private:
     std::size_t node_count_ = 0;
     std::vector<std::pair<std::uint64_t, std::uint32_t>> piece_vertices_; ///< vertex, crossing
     std::vector<std::array<std::uint64_t, 2>> crossed_;                   ///< edges that are, by their vertices; sorted
-    DisjointSets sets_;                                                   ///< crossings, then vertices_
-    std::vector<std::uint32_t> region_of_;                                ///< by crossing and vertex
+    std::array<std::vector<std::uint32_t>, 2> node_at_; ///< by vertex of either body; NONE between pairs
+    DisjointSets sets_;                                 ///< crossings, then vertices_
+    std::vector<std::uint32_t> region_of_;              ///< by crossing and vertex
     std::vector<Region> regions_;
     std::vector<std::pair<std::uint32_t, Vec3>> points_, faces_; ///< by region: points, and normals of faces crossed
     std::vector<std::pair<std::uint32_t, Vec3>> sorted_;

@@ -59,7 +59,16 @@ std::string point(const Vec3& p) {
 
 void check_mesh(const Mesh& mesh, const std::string& name) {
     const auto fail = [&](const std::string& what) { throw InputError(name + ": " + what); };
-    if (mesh.triangles.empty()) fail("has no triangles; export a triangle mesh");
+    if (mesh.triangles.empty()) {
+        std::string others; // what the file has instead
+        for (const std::string& repair : mesh.repairs) others += (others.empty() ? " (" : ", ") + repair;
+        constexpr std::size_t most = 200;
+        std::size_t cut = others.size();
+        if (cut > most)
+            for (cut = most; (others[cut] & 0xc0) == 0x80;) --cut; // no half of a UTF-8 character
+        if (cut < others.size()) others = others.substr(0, cut) + "...";
+        fail("has no triangles" + others + (others.empty() ? "" : ")") + "; export a triangle mesh");
+    }
     if (mesh.triangles.size() > most_triangles || mesh.vertices.size() > most_vertices)
         fail("has more than " + std::to_string(most_triangles) + " triangles or " + std::to_string(most_vertices)
              + " vertices; split or reduce it");

@@ -24,6 +24,20 @@ struct GltfFile::ComponentType {
 
 namespace {
 
+bool is_read(std::string_view extension) {
+    return std::ranges::any_of(std::array{"KHR_mesh_quantization", GltfFile::instancing, GltfFile::visibility,
+                                          GltfFile::levels, GltfFile::centre},
+                               [&](const char* name) { return extension == name; });
+}
+
+/// By words in its name: it neither moves nor makes any while the file is at rest.
+bool leaves_triangles(std::string_view extension) {
+    return std::ranges::any_of(std::array{"materials", "texture", "lights", "metadata", "features", "xmp", "animation",
+                                          "interactivity", "audio", "selectability", "hoverability", "manifold",
+                                          "outline", "edge_visibility"},
+                               [&](const char* word) { return extension.find(word) != std::string_view::npos; });
+}
+
 // Stops at the padding, or at damage, which leaves too few bytes.
 std::string decoded_base64(std::string_view text, std::size_t most) {
     constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -71,7 +85,8 @@ GltfFile::GltfFile(const InputFile& file) : file_(file), bytes_(file.bytes.size(
         text = chunk(12, "JSON");
         after_json_ = 20 + text.size();
     }
-    constexpr int deepest = 64; // extras may hold anything
+    text = text.substr(0, text.find_last_not_of(text_padding) + 1); // some fill chunks with NUL
+    constexpr int deepest = 64;                                     // extras may hold anything
     if (json_depth(text) > deepest)
         file.fail("nests its JSON more than " + std::to_string(deepest) + " deep; export without extras");
     json_ = json::parse(text);
@@ -88,10 +103,8 @@ void GltfFile::read_buffers() {
         const std::string extension = text_of({entry, "extensionsRequired"});
         if (extension == draco) fail_of_compression("Draco");
         if (std::ranges::find(meshopt, extension) != meshopt.end()) fail_of_compression("meshopt");
-        if (extension != "KHR_mesh_quantization" && extension.find("materials") == std::string::npos
-            && extension.find("texture") == std::string::npos && extension.find("lights") == std::string::npos) {
+        if (!is_read(extension) && !leaves_triangles(extension))
             file_.fail("needs the extension " + in_quotes(extension) + "; export without it");
-        }
     }
     // A file that several buffers name is read once, as far as the longest of them needs.
     const std::size_t count = list(root_, "buffers").size();
@@ -129,9 +142,22 @@ void GltfFile::fail_of_version_1() const {
     file_.fail("is of glTF 1.0, which is not read; convert it to glTF 2.0 (`gltf-pipeline -i IN -o OUT` does)");
 }
 
-bool GltfFile::has_extension(const Item& item, std::string_view name) const {
-    const std::optional<Item> extensions = member(item, "extensions");
-    return extensions && extensions->value.is_object() && extensions->value.contains(name);
+std::vector<std::string> GltfFile::unread_extensions() const {
+    std::vector<std::string> found;
+    for (const json& entry : list(root_, "extensionsUsed")) {
+        const std::string& name = text_of({entry, "extensionsUsed"});
+        // Compressed data that can be read lies uncompressed beside.
+        if (!is_read(name) && !leaves_triangles(name) && name != draco
+            && std::ranges::find(meshopt, name) == meshopt.end())
+            found.push_back(printable(name));
+    }
+    return found;
+}
+
+std::optional<GltfFile::Item> GltfFile::extension(const Item& of, const char* name) const {
+    const std::optional<Item> extensions = member(of, "extensions");
+    if (!extensions || !extensions->value.is_object()) return {};
+    return member(*extensions, name);
 }
 
 void GltfFile::fail(const Item& item, const std::string& what) const {
@@ -235,7 +261,7 @@ std::string_view GltfFile::read_buffer(std::size_t index) {
     if (const std::optional<Item> uri = member(buffer, "uri")) {
         bytes = is_data(*uri) ? keep(decoded_data(*uri, length)) : fetched(*uri);
     } else {
-        for (const std::string_view name : meshopt)
+        for (const char* name : meshopt)
             if (has_extension(buffer, name)) fail_of_compression("meshopt");
         // The chunk of a GLB is its first buffer (glTF 2.0, section 3.6.1.2).
         if (index > 0 || !after_json_) file_.fail(buffer.name + " has no uri; it is damaged");

@@ -29,15 +29,19 @@ public:
         std::string name;
     };
 
-    /// An extension of primitives that are compressed.
-    static constexpr std::string_view draco = "KHR_draco_mesh_compression";
+    /// Extensions of primitives that are compressed, and of nodes.
+    static constexpr const char *draco = "KHR_draco_mesh_compression", *instancing = "EXT_mesh_gpu_instancing",
+                                *visibility = "KHR_node_visibility", *levels = "MSFT_lod", *centre = "CESIUM_RTC";
 
     /// Reads the JSON.
     explicit GltfFile(const InputFile& file);
     /// Refuses extensions without which the file cannot be read. Needed before read_accessor().
     void read_buffers();
     [[noreturn]] void fail_of_compression(const char* kind) const;
-    bool has_extension(const Item& item, std::string_view name) const;
+    /// Those that the file uses and that may move or make triangles, and are not read.
+    std::vector<std::string> unread_extensions() const;
+    bool has_extension(const Item& item, const char* name) const { return extension(item, name).has_value(); }
+    std::optional<Item> extension(const Item& of, const char* name) const;
     [[noreturn]] void fail(const Item& item, const std::string& what) const;
     /// An entry of one of the lists of the file.
     Item item(const char* key, std::size_t index) const;
@@ -65,7 +69,7 @@ public:
     const InputFile& file() const { return file_; }
 
 private:
-    static constexpr std::array<std::string_view, 2> meshopt{"EXT_meshopt_compression", "KHR_meshopt_compression"};
+    static constexpr std::array<const char*, 2> meshopt{"EXT_meshopt_compression", "KHR_meshopt_compression"};
 
     struct ComponentType;
     /// Its lists were objects. A file may lack the version.

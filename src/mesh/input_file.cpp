@@ -19,6 +19,10 @@ std::string no_vertex(std::int64_t index, std::size_t vertex_count) {
     return "vertex index " + std::to_string(index) + " is not in 0 to " + std::to_string(vertex_count) + " - 1";
 }
 
+std::string InputFile::name() const {
+    return printable(path.filename().string());
+}
+
 void InputFile::fail(const std::string& what) const {
     throw InputError(shown + ": " + what);
 }

@@ -14,9 +14,13 @@
 #include <cstring>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <type_traits>
 
 namespace raycontact {
+
+/// What programs fill the end of a text with: NUL and Ctrl-Z.
+constexpr std::string_view text_padding("\0\x1a", 2);
 
 /// The limits on one mesh: three corners of every triangle are counted in 32 bits.
 constexpr std::size_t most_vertices = 0xfffffffeu;
@@ -31,6 +35,8 @@ struct InputFile {
 
     /// Throws InputError unless it is an ordinary file that can be read and is not empty. Stops after `most` bytes.
     static InputFile read(const std::filesystem::path& path, std::size_t most = std::string::npos);
+    /// Of the file without its folder, fit for a message.
+    std::string name() const;
     [[noreturn]] void fail(const std::string& what) const;
     [[noreturn]] void fail_at(std::size_t line, const std::string& what) const;
 };
@@ -51,7 +57,10 @@ Mesh read_stl(const InputFile& file);
 Mesh read_ply(const InputFile& file);
 Mesh read_off(const InputFile& file);
 Mesh read_gltf(const InputFile& file);
-std::vector<AssemblyPart> read_gltf_parts(const InputFile& file);
+// Of the formats that have parts; what was left out or mended is appended to `notes`.
+std::vector<AssemblyPart> read_obj_parts(const InputFile& file, std::vector<std::string>& notes);
+std::vector<AssemblyPart> read_stl_parts(const InputFile& file, std::vector<std::string>& notes);
+std::vector<AssemblyPart> read_gltf_parts(const InputFile& file, std::vector<std::string>& notes);
 
 /// A number at `at` in the byte order of the file; the caller has checked that sizeof(T) bytes are there.
 template <class T>

@@ -19,9 +19,21 @@ namespace {
 struct Format {
     std::string_view ending;
     Mesh (*read)(const InputFile&);
+    std::vector<AssemblyPart> (*read_parts)(const InputFile&, std::vector<std::string>&) = nullptr;
 };
-constexpr std::array formats{Format{".obj", &read_obj}, Format{".stl", &read_stl},   Format{".ply", &read_ply},
-                             Format{".off", &read_off}, Format{".gltf", &read_gltf}, Format{".glb", &read_gltf}};
+constexpr std::array formats{Format{".obj", &read_obj, &read_obj_parts},
+                             Format{".stl", &read_stl, &read_stl_parts},
+                             Format{".ply", &read_ply},
+                             Format{".off", &read_off},
+                             Format{".gltf", &read_gltf, &read_gltf_parts},
+                             Format{".glb", &read_gltf, &read_gltf_parts}};
+
+const Format& format_of(const InputFile& file) {
+    const std::string ending = lower_case(file.path.extension().string());
+    for (const Format& format : formats)
+        if (ending == format.ending) return format;
+    file.fail("unknown ending " + in_quotes(ending) + "; known are .obj .stl .ply .off .gltf .glb");
+}
 
 Mesh read_mesh(const Format& format, const InputFile& file, const std::string& name) {
     Mesh mesh = format.read(file);
@@ -55,11 +67,8 @@ Mesh mesh_of(std::span<const Real> coordinates, std::span<const std::uint32_t> c
 } // namespace
 
 Mesh load_mesh(const std::filesystem::path& path) {
-    const std::string ending = lower_case(path.extension().string());
     const InputFile file = InputFile::read(path);
-    for (const Format& format : formats)
-        if (ending == format.ending) return read_mesh(format, file, path.filename().string());
-    file.fail("unknown ending " + in_quotes(ending) + "; known are .obj .stl .ply .off .gltf .glb");
+    return read_mesh(format_of(file), file, path.filename().string());
 }
 
 Mesh load_mesh(std::span<const std::byte> bytes, MeshFormat format, const std::string& name) {
@@ -79,20 +88,24 @@ Mesh make_mesh(std::span<const float> coordinates, std::span<const std::uint32_t
     return mesh_of(coordinates, corners, name);
 }
 
-std::vector<AssemblyPart> load_assembly(const std::filesystem::path& path) {
-    const std::string ending = lower_case(path.extension().string());
-    if (ending != ".gltf" && ending != ".glb") {
-        auto mesh = std::make_shared<const Mesh>(load_mesh(path));
-        std::string name = mesh->name;
-        return {{std::move(name), std::move(mesh), {}, path.string()}};
-    }
+std::vector<AssemblyPart> load_assembly(const std::filesystem::path& path, std::vector<std::string>* left_out) {
     const InputFile file = InputFile::read(path);
-    std::vector<AssemblyPart> parts = read_gltf_parts(file);
-    if (parts.empty()) check_mesh({}, file.shown);
+    const Format& format = format_of(file);
+    std::vector<AssemblyPart> parts;
+    Mesh others; // what is said of what is no part
+    if (format.read_parts != nullptr) {
+        parts = format.read_parts(file, others.repairs);
+    } else {
+        auto mesh = std::make_shared<const Mesh>(read_mesh(format, file, path.filename().string()));
+        others.repairs = mesh->repairs;
+        parts.push_back({mesh->name, std::move(mesh), {}});
+    }
+    if (parts.empty()) check_mesh(others, file.shown);
     for (AssemblyPart& part : parts) {
         check_mesh(*part.mesh, file.shown + ": " + part.name);
         part.file = path.string();
     }
+    if (left_out != nullptr) *left_out = std::move(others.repairs);
     return parts;
 }
 

@@ -2,6 +2,7 @@
 // The scene of a glTF file: where its nodes place meshes, and their triangles.
 #include "mesh/gltf_file.h"
 #include "mesh/gltf_moves.h"
+#include "mesh/nonfinite_vertices.h"
 #include "mesh/vector.h"
 
 #include <raycontact/assembly.h>
@@ -30,11 +31,12 @@ public:
 
     Mesh read() {
         for_each_placed_mesh([&](const PlacedMesh& placed) { read_mesh(placed, placed.placement); });
+        mesh_.repairs = notes();
         return std::move(mesh_);
     }
 
     /// Each node that places a mesh by itself, but for those without triangles.
-    std::vector<AssemblyPart> read_parts() {
+    std::vector<AssemblyPart> read_parts(std::vector<std::string>& told) {
         std::map<std::string, std::shared_ptr<const Mesh>> known;
         std::vector<AssemblyPart> parts;
         std::vector<std::size_t> places; // of their nodes
@@ -45,13 +47,14 @@ public:
             if (!made) {
                 read_mesh(placed, own);
                 before_ += mesh_.vertices.size() + mesh_.triangles.size();
-                mesh_.name = name_of(placed.node);
+                mesh_.name = placed.name;
                 made = std::make_shared<const Mesh>(std::exchange(mesh_, {}));
             }
             if (made->triangles.empty()) return;
-            nodes_[placed.place].part = parts.size();
+            std::size_t& part = nodes_[placed.place].part;
+            if (part == AssemblyPart::no_part) part = parts.size(); // of instances the first
             places.push_back(placed.place);
-            parts.push_back({name_of(placed.node), made, pose});
+            parts.push_back({placed.name, made, pose});
         });
         for (const std::size_t n : from_roots_) {
             if (nodes_[n].parent == AssemblyPart::no_part) continue;
@@ -59,6 +62,8 @@ public:
             nodes_[n].above = parent.part != AssemblyPart::no_part ? parent.part : parent.above;
         }
         for (std::size_t i = 0; i < parts.size(); ++i) parts[i].parent = nodes_[places[i]].above;
+        const std::vector<std::string> own = notes();
+        told.insert(told.end(), own.begin(), own.end());
         return parts;
     }
 
@@ -67,7 +72,8 @@ private:
         std::vector<std::size_t> children;
         bool waits = false; ///< for its parent to be placed
         bool in_scene = false;
-        Placement placement; ///< in its parent, then in the scene
+        const char* left_out = nullptr;             ///< why it is, with all below it
+        Placement placement;                        ///< in its parent, then in the scene
         std::size_t parent = AssemblyPart::no_part; ///< a node
         std::size_t part = AssemblyPart::no_part;   ///< that it is
         std::size_t above = AssemblyPart::no_part;  ///< the nearest part that it is under
@@ -77,6 +83,7 @@ private:
     struct PlacedMesh {
         Item node, mesh;
         std::size_t place;               ///< of the node
+        std::string name;                ///< of the node, and of which of its instances
         std::size_t number;              ///< of the mesh
         std::optional<std::size_t> skin; ///< which places each vertex by itself
         std::vector<double> weights;     ///< of its morph targets
@@ -96,17 +103,68 @@ private:
             if (!named) continue;
             const std::size_t number = whole(*named);
             const Item mesh = item("meshes", number);
-            if (!nodes_[n].in_scene) continue;
-            primitives += list(mesh, "primitives").size();
-            if (primitives > most_primitives) file().fail("places too many primitives; split or reduce it");
-            PlacedMesh placed{node, mesh, n, number, {}, morph_weights(*this, node, mesh), {}};
-            count_moves(placed.weights.size());
-            if (skin)
-                read_skin(placed.skin.emplace(whole(*skin)));
-            else
-                placed.placement = nodes_[n].placement;
-            visit(placed);
+            const char* const left_out = nodes_[n].left_out;
+            if (left_out || !nodes_[n].in_scene) {
+                left_out_[left_out ? left_out : "not in the scene"].push_back(name_of(node));
+                continue;
+            }
+            const bool is_instanced = has_extension(node, instancing);
+            if (is_instanced && skin) fail(node, "has instances of a mesh with a skin; export them as nodes");
+            const std::vector<Placement> instances =
+                is_instanced ? own_instances(node) : std::vector<Placement>(1, Placement());
+            for (std::size_t i = 0; i < instances.size(); ++i) {
+                primitives += list(mesh, "primitives").size();
+                if (primitives > most_primitives) file().fail("places too many primitives; split or reduce it");
+                PlacedMesh placed{node, mesh, n, name_of(node), number, {}, morph_weights(*this, node, mesh), {}};
+                if (is_instanced) placed.name.append("[").append(std::to_string(i)).append("]");
+                count_moves(placed.weights.size());
+                if (skin)
+                    read_skin(placed.skin.emplace(whole(*skin)));
+                else
+                    placed.placement = nodes_[n].placement.after(instances[i]);
+                visit(placed);
+            }
+            if (with_others_.contains(number)) left_out_["points, lines or no positions"].push_back(name_of(node));
         }
+    }
+
+    /// In the node's frame (EXT_mesh_gpu_instancing).
+    std::vector<Placement> own_instances(const Item& node) const {
+        const Item attributes = needed(*extension(node, instancing), "attributes");
+        std::optional<std::size_t> count;
+        const auto read_list = [&](const char* key, const char* type, std::size_t width) -> std::vector<double> {
+            const std::optional<Item> named = member(attributes, key);
+            if (!named) return {};
+            const Item accessor = item("accessors", whole(*named));
+            std::vector<double> found = read_accessor(accessor, type, width);
+            if (count && *count != found.size() / width) fail(accessor, "has not as many instances as the others");
+            count = found.size() / width;
+            return found;
+        };
+        const std::vector<double> moves = read_list("TRANSLATION", "VEC3", 3), turns = read_list("ROTATION", "VEC4", 4),
+                                  scales = read_list("SCALE", "VEC3", 3);
+        if (!count) fail(attributes, "has no TRANSLATION, ROTATION or SCALE; export the instances as nodes");
+        const auto of = [](const std::vector<double>& list, std::size_t i, std::size_t width) {
+            return list.empty() ? std::span<const double>() : std::span(list).subspan(i * width, width);
+        };
+        std::vector<Placement> found;
+        for (std::size_t i = 0; i < *count; ++i)
+            found.push_back(placement_of(node, of(moves, i, 3), of(turns, i, 4), of(scales, i, 3)));
+        return found;
+    }
+
+    /// What was left out or not understood, in words.
+    std::vector<std::string> notes() const {
+        std::vector<std::string> found;
+        for (const auto& [why, names] : left_out_) {
+            std::string text = "left out";
+            for (const std::string& name : names) text += (&name == &names[0] ? " '" : ", '") + name + "'";
+            found.push_back(text + ": " + why);
+        }
+        for (const std::string& name : unread_extensions())
+            found.push_back("left out what the extension " + in_quotes(name) + " moves or adds; it is not read");
+        if (nonfinite_ > 0) found.push_back(left_out_nonfinite(nonfinite_));
+        return found;
     }
 
     void read_skin(std::size_t number) {
@@ -184,6 +242,12 @@ private:
         nodes_.resize(list(root(), "nodes").size());
         for (std::size_t n = 0; n < nodes_.size(); ++n) {
             const Item node = item("nodes", n);
+            const std::optional<Item> visible = extension(node, visibility), lod = extension(node, levels);
+            if (visible && member(*visible, "visible") && !flag(*visible, "visible"))
+                nodes_[n].left_out = "hidden (KHR_node_visibility)";
+            if (lod)
+                for (const std::size_t level : node_list(*lod, "ids"))
+                    nodes_[level].left_out = "lower levels of detail (MSFT_lod)";
             nodes_[n].placement = own_placement(node);
             nodes_[n].children = node_list(node, "children");
             for (const std::size_t child : nodes_[n].children) {
@@ -200,12 +264,19 @@ private:
         for (const std::size_t n : has_scene ? node_list(item("scenes", whole(root(), "scene", 0)), "nodes") : order)
             nodes_[n].in_scene = true;
         std::erase_if(order, [&](std::size_t n) { return nodes_[n].waits; });
+        if (const std::optional<Item> moved = extension(root(), centre)) {
+            const std::vector<double> to = numbers(*moved, "center", 3);
+            if (to.empty()) fail(*moved, "has no center");
+            for (const std::size_t n : order)
+                nodes_[n].placement.origin = nodes_[n].placement.origin + Vec3{to[0], to[1], to[2]};
+        }
         for (std::size_t i = 0; i < order.size(); ++i) {
             const Node& parent = nodes_[order[i]];
             for (const std::size_t c : parent.children) {
                 Node& child = nodes_[c];
                 child.placement = parent.placement.after(child.placement);
                 child.in_scene = child.in_scene || parent.in_scene;
+                if (parent.left_out) child.left_out = parent.left_out;
                 child.waits = false;
                 order.push_back(c);
             }
@@ -219,8 +290,15 @@ private:
     Placement own_placement(const Item& node) const {
         if (const std::vector<double> m = numbers(node, "matrix", 16); !m.empty()) // by columns
             return Placement::of_matrix(m);
+        return placement_of(node, numbers(node, "translation", 3), numbers(node, "rotation", 4),
+                            numbers(node, "scale", 3));
+    }
+
+    /// Any of the three may be empty.
+    Placement placement_of(const Item& node, std::span<const double> t, std::span<const double> q,
+                           std::span<const double> scale) const {
         Placement own;
-        if (const std::vector<double> q = numbers(node, "rotation", 4); !q.empty()) {
+        if (!q.empty()) {
             const double x = q[0], y = q[1], z = q[2], w = q[3];
             const double norm = x * x + y * y + z * z + w * w;
             if (!(norm > 0)) fail(node, "its rotation is zero");
@@ -229,12 +307,12 @@ private:
             own.y = {s * (x * y - z * w), 1 - s * (x * x + z * z), s * (y * z + x * w)};
             own.z = {s * (x * z + y * w), s * (y * z - x * w), 1 - s * (x * x + y * y)};
         }
-        if (const std::vector<double> scale = numbers(node, "scale", 3); !scale.empty()) {
+        if (!scale.empty()) {
             own.x = scale[0] * own.x;
             own.y = scale[1] * own.y;
             own.z = scale[2] * own.z;
         }
-        if (const std::vector<double> t = numbers(node, "translation", 3); !t.empty()) own.origin = {t[0], t[1], t[2]};
+        if (!t.empty()) own.origin = {t[0], t[1], t[2]};
         return own;
     }
 
@@ -280,7 +358,8 @@ private:
 
     /// Appends the vertices of a primitive. Returns which of them are mirrored.
     std::vector<char> place_vertices(const Item& primitive, const Item& accessor, std::span<double> positions,
-                                     const PlacedMesh& placed, const Placement& placement) {
+                                     std::span<const std::uint32_t> corners, const PlacedMesh& placed,
+                                     const Placement& placement) {
         const std::size_t count = positions.size() / 3;
         const Item attributes = needed(primitive, "attributes");
         const auto idle = static_cast<std::size_t>(std::ranges::count(placed.weights, 0.0));
@@ -290,16 +369,23 @@ private:
         add_morph_targets(*this, primitive, placed.weights, positions);
         std::vector<Placement> by_joints;
         if (placed.skin) by_joints = skins_.at(*placed.skin).placements(*this, attributes, count);
-        std::vector<char> mirrored;
+        std::vector<char> mirrored, used;
         mirrored.reserve(count);
         for (std::size_t v = 0; v < count; ++v) {
             const Placement& own = placed.skin ? by_joints[v] : placement;
             mirrored.push_back(own.mirrors() ? 1 : 0);
             mesh_.vertices.push_back(own.placed({positions[3 * v], positions[3 * v + 1], positions[3 * v + 2]}));
-            if (!is_finite(mesh_.vertices.back())) {
+            if (is_finite(mesh_.vertices.back())) continue;
+            if (used.empty()) {
+                used.resize(count);
+                for (const std::uint32_t corner : corners) used[corner] = 1;
+            }
+            if (used[v] != 0) {
                 fail(accessor,
                      "record " + std::to_string(v) + " is not finite where " + placed.node.name + " places it");
             }
+            ++nonfinite_;
+            mesh_.vertices.back() = placement.origin;
         }
         return mirrored;
     }
@@ -309,7 +395,10 @@ private:
         const std::size_t mode = whole(primitive, "mode", triangles);
         if (mode > fan) fail(primitive, "mode " + std::to_string(mode) + " is not in 0 to 6");
         const std::optional<Item> position = member(needed(primitive, "attributes"), "POSITION");
-        if (mode < triangles || !position) return; // allowed, and nothing to see
+        if (mode < triangles || !position) { // allowed, and nothing to see
+            with_others_.insert(placed.number);
+            return;
+        }
         const Item accessor = item("accessors", whole(*position));
         if (has_extension(primitive, draco) && !member(accessor, "bufferView")) fail_of_compression("Draco");
         std::vector<double> points = read_accessor(accessor, "VEC3", 3);
@@ -320,7 +409,7 @@ private:
         const std::size_t more = mode == triangles ? list.size() / 3 : std::max<std::size_t>(list.size(), 2) - 2;
         if (mesh_.triangles.size() + more > most_triangles) file().fail("has too many triangles; split or reduce it");
         check_growth(points.size() / 3 + more);
-        const std::vector<char> mirrored = place_vertices(primitive, accessor, points, placed, placement);
+        const std::vector<char> mirrored = place_vertices(primitive, accessor, points, list, placed, placement);
         if (mode == triangles && list.size() % 3 != 0) {
             fail(primitive, "triangles have " + std::to_string(list.size()) + " corners, not a multiple of 3");
         }
@@ -336,10 +425,13 @@ private:
     }
 
     std::vector<Node> nodes_;
-    std::vector<std::size_t> from_roots_; ///< nodes, each after its parent
-    std::map<std::size_t, GltfSkin> skins_; ///< that were read
-    std::size_t moves_ = 0;                 ///< steps of morph targets and skins
-    std::set<double> scales_;               ///< of parts
+    std::vector<std::size_t> from_roots_;                      ///< nodes, each after its parent
+    std::map<std::size_t, GltfSkin> skins_;                    ///< that were read
+    std::map<std::string, std::vector<std::string>> left_out_; ///< why, and the names of the nodes
+    std::set<std::size_t> with_others_;                        ///< meshes that hold more than triangles
+    std::size_t nonfinite_ = 0;                                ///< vertices that no triangle uses
+    std::size_t moves_ = 0;                                    ///< steps of morph targets and skins
+    std::set<double> scales_;                                  ///< of parts
     std::size_t before_ = 0; ///< vertices and triangles of the meshes before this one, where they are read apart
     Mesh mesh_;
 };
@@ -363,8 +455,8 @@ Mesh read_gltf(const InputFile& file) {
     return told(file, [&] { return GltfReader(file).read(); });
 }
 
-std::vector<AssemblyPart> read_gltf_parts(const InputFile& file) {
-    return told(file, [&] { return GltfReader(file).read_parts(); });
+std::vector<AssemblyPart> read_gltf_parts(const InputFile& file, std::vector<std::string>& notes) {
+    return told(file, [&] { return GltfReader(file).read_parts(notes); });
 }
 
 } // namespace raycontact

@@ -2,6 +2,8 @@
 // Our own reader: assimp keeps double coordinates as float32, and reads truncated or damaged elements without an error.
 #include "mesh/polygon.h"
 #include "mesh/text_scanner.h"
+#include "mesh/vector.h"
+#include "number_text.h"
 
 #include <algorithm>
 #include <array>
@@ -37,7 +39,10 @@ struct Element {
     /// The properties that are read: x, y and z of a vertex; the list of corners of a face. All others are skipped.
     static constexpr std::size_t none = ~std::size_t{0}, corners = 3;
     std::array<std::size_t, 4> used{none, none, none, none};
+    bool is_of_vertices = false; ///< has a list of them: it is geometry, read or not
 };
+
+constexpr std::string_view strips = "tristrips";
 
 class PlyReader {
 public:
@@ -48,9 +53,12 @@ public:
     Mesh read() {
         read_header();
         for (const Element& element : elements_) read_element(element);
-        if (ascii_ ? !text_.at_end() : rest().find_first_not_of(" \t\r\n") != std::string_view::npos)
+        if (ascii_ ? !text_.at_end()
+                   : rest().find_first_not_of(" \t\r\n" + std::string(text_padding)) != std::string::npos)
             file_.fail("more data than its header announces; it is damaged");
         polygons_.finish(mesh_);
+        nonfinite_.finish(mesh_, file_);
+        if (edges_ > 0) mesh_.repairs.push_back("left out " + counted(edges_, "face") + " of two corners");
         return std::move(mesh_);
     }
 
@@ -115,10 +123,12 @@ private:
         const std::string_view name = text_.word_on_line();
         if (element.name == "vertex" && !property.count_type && (name == "x" || name == "y" || name == "z")) {
             element.used[static_cast<std::size_t>(name[0] - 'x')] = element.properties.size();
-        } else if (element.name == "face" && property.count_type
-                   && (name == "vertex_indices" || name == "vertex_index")) {
-            if (!property.type.whole) text_.fail("vertex indices must be whole numbers");
-            element.used[Element::corners] = element.properties.size();
+        } else if (property.count_type && (name == "vertex_indices" || name == "vertex_index")) {
+            element.is_of_vertices = true;
+            if (element.name == "face" || element.name == strips) {
+                if (!property.type.whole) text_.fail("vertex indices must be whole numbers");
+                element.used[Element::corners] = element.properties.size();
+            }
         }
         element.properties.push_back(property);
     }
@@ -145,7 +155,8 @@ private:
             file_.fail("element 'vertex' lacks x, y or z");
         if (element.name == "vertex" && !mesh_.vertices.empty())
             file_.fail("two elements named 'vertex'; it is damaged");
-        if (element.name == "face" && lacks(Element::corners)) file_.fail("element 'face' lacks a list vertex_indices");
+        if ((element.name == "face" || element.name == strips) && lacks(Element::corners))
+            file_.fail("element " + in_quotes(element.name) + " lacks a list vertex_indices");
     }
 
     void read_element(const Element& element) {
@@ -153,34 +164,63 @@ private:
         name_ = element.name;
         if (name_ == "vertex") mesh_.vertices.reserve(element.count);
         if (name_ == "face") mesh_.triangles.reserve(mesh_.triangles.size() + element.count);
+        const bool is_read = name_ == "vertex" || element.used[Element::corners] != Element::none;
+        if (!is_read && (name_ == "edge" || element.is_of_vertices) && element.count > 0)
+            mesh_.repairs.push_back("left out " + counted(element.count, "record") + " of element " + in_quotes(name_));
         for (record_ = 0; record_ < element.count; ++record_) {
-            std::array<double, 3> point{};
+            Vec3 point;
             for (std::size_t i = 0; i < element.properties.size(); ++i) {
                 const Property& property = element.properties[i];
                 const auto use = static_cast<std::size_t>(std::ranges::find(element.used, i) - element.used.begin());
-                if (use < point.size()) {
-                    point[use] = read_number(property.type);
+                if (use < Element::corners) {
+                    read_coordinate(*std::array{&point.x, &point.y, &point.z}[use], property.type);
                 } else if (use == Element::corners) {
-                    read_face(property);
+                    name_ == strips ? read_strips(property) : read_face(property);
                 } else {
                     skip(property);
                 }
             }
-            if (name_ == "vertex") mesh_.vertices.push_back({point[0], point[1], point[2]});
+            if (name_ == "vertex") mesh_.vertices.push_back(is_finite(point) ? point : Vec3{});
         }
     }
 
     void read_face(const Property& property) {
         const std::uint64_t count = read_list_count(property);
-        if (count < 3) fail("a face needs at least 3 vertices, this one has " + std::to_string(count));
+        if (count < 2) fail("a face needs at least 3 vertices, this one has " + std::to_string(count));
         if (count > file_.bytes.size()) fail("a face of " + std::to_string(count) + " vertices; it is damaged");
         corners_.clear();
-        for (std::uint64_t k = 0; k < count; ++k) {
+        for (std::uint64_t k = 0; k < count; ++k) corners_.push_back(vertex(read_whole(property.type)));
+        if (count == 2)
+            ++edges_;
+        else
+            polygons_.append(mesh_, corners_);
+    }
+
+    /// Of a list: every three vertices that follow each other are a triangle, every second of them turned over, until
+    /// -1 starts a new strip.
+    void read_strips(const Property& property) {
+        std::array<std::uint32_t, 2> last{};
+        std::size_t length = 0; // of the strip so far
+        for (std::uint64_t left = read_list_count(property); left > 0; --left) {
             const std::int64_t index = read_whole(property.type);
-            if (index < 0 || index >= 0xffffffffll) fail("vertex index " + std::to_string(index) + " is out of range");
-            corners_.push_back(static_cast<std::uint32_t>(index)); // faces may come before vertices
+            if (index == -1 || index == 0xffffffffll) {
+                length = 0;
+                continue;
+            }
+            const std::uint32_t v = vertex(index);
+            if (length >= 2) {
+                const std::size_t odd = length % 2;
+                mesh_.triangles.push_back({last[odd], last[1 - odd], v});
+            }
+            last = {last[1], v};
+            ++length;
         }
-        polygons_.append(mesh_, corners_);
+    }
+
+    /// Of an index; faces may come before vertices.
+    std::uint32_t vertex(std::int64_t index) const {
+        if (index < 0 || index >= 0xffffffffll) fail("vertex index " + std::to_string(index) + " is out of range");
+        return static_cast<std::uint32_t>(index);
     }
 
     void skip(const Property& property) {
@@ -197,11 +237,10 @@ private:
         return static_cast<std::uint64_t>(count);
     }
 
-    double read_number(const NumberType& type) {
-        if (ascii_) return text_.number(text_.word(), "number");
-        const double value = type.read(take(type.size), little_endian_);
-        if (!std::isfinite(value)) fail("a coordinate is not finite");
-        return value;
+    void read_coordinate(double& coordinate, const NumberType& type) {
+        const std::string_view word = ascii_ ? text_.word() : std::string_view();
+        coordinate = ascii_ ? text_.any_number(word, "number") : type.read(take(type.size), little_endian_);
+        if (!std::isfinite(coordinate)) nonfinite_.add(record_, ascii_ ? text_.line() : 0, word);
     }
 
     std::int64_t read_whole(const NumberType& type) {
@@ -235,6 +274,8 @@ private:
     std::vector<std::uint32_t> corners_;
     Mesh mesh_;
     PolygonCutter polygons_;
+    NonfiniteVertices nonfinite_;
+    std::size_t edges_ = 0; ///< faces of two corners
 };
 
 } // namespace

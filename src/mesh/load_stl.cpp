@@ -1,23 +1,51 @@
 // SPDX-License-Identifier: Apache-2.0
 // Our own reader: assimp welds and reorders vertices by its own rules, keeps text coordinates as float32 and accepts
 // truncated files without an error.
+#include "mesh/groups.h"
 #include "mesh/text_scanner.h"
 #include "mesh/vector.h"
+#include "number_text.h"
 
 #include <algorithm>
+#include <array>
+#include <optional>
+#include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace raycontact {
 namespace {
 
 constexpr std::size_t header_size = 84, facet_size = 50;
 
-Mesh read_binary(const InputFile& file, std::size_t facets) {
+std::uint32_t announced_facets(const InputFile& file) {
+    return read_bytes<std::uint32_t>(file.bytes.data() + 80);
+}
+
+/// The bytes that a facet's attribute says follow it, where it counts any.
+std::size_t payload_at(const InputFile& file, std::size_t facet) {
+    return read_bytes<std::uint16_t>(file.bytes.data() + facet + 48);
+}
+
+/// Whether each facet has a payload as long as its attribute says, up to the very end of the file.
+bool has_payloads(const InputFile& file) {
+    std::size_t at = header_size;
+    for (std::uint64_t left = announced_facets(file); left > 0; --left) {
+        if (file.bytes.size() - at < facet_size) return false;
+        at += facet_size + payload_at(file, at);
+        if (at > file.bytes.size()) return false;
+    }
+    return at == file.bytes.size();
+}
+
+Mesh read_facets(const InputFile& file, std::size_t facets, bool payloads) {
     Mesh mesh;
     mesh.vertices.reserve(3 * facets);
     mesh.triangles.reserve(facets);
+    std::size_t facet = header_size;
     for (std::size_t i = 0; i < facets; ++i) {
-        const char* const corners = file.bytes.data() + header_size + i * facet_size + 12; // past the normal
+        const char* const corners = file.bytes.data() + facet + 12; // past the normal
         const auto first = static_cast<std::uint32_t>(3 * i);
         for (std::size_t k = 0; k < 3; ++k) {
             const char* const at = corners + 12 * k;
@@ -26,26 +54,72 @@ Mesh read_binary(const InputFile& file, std::size_t facets) {
             mesh.vertices.push_back(point);
         }
         mesh.triangles.push_back({first, first + 1, first + 2});
+        facet += facet_size + (payloads ? payload_at(file, facet) : 0);
     }
+    return mesh;
+}
+
+Mesh read_binary(const InputFile& file) {
+    const std::size_t announced = announced_facets(file), size = file.bytes.size() - header_size;
+    if (size == announced * facet_size) return read_facets(file, announced, false);
+    if (has_payloads(file)) {
+        Mesh mesh = read_facets(file, announced, true);
+        mesh.repairs.push_back("skipped the attributes behind the facets, "
+                               + counted(size - announced * facet_size, "byte"));
+        return mesh;
+    }
+    // Writers that do not know the count beforehand leave one of these.
+    const bool open = announced == 0 || announced == 0xffffffffu;
+    if (!open && size < announced * facet_size) {
+        file.fail("a binary STL file of " + std::to_string(announced) + " facets has "
+                  + std::to_string(header_size + announced * facet_size) + " bytes, this one "
+                  + std::to_string(file.bytes.size()) + "; it is truncated or damaged");
+    }
+    const std::size_t room = size / facet_size, facets = open || size % facet_size == 0 ? room : announced;
+    Mesh mesh = read_facets(file, facets, false);
+    if (facets != announced) {
+        mesh.repairs.push_back("counted " + counted(facets, "facet") + " from the file's size, as its header says "
+                               + std::to_string(announced));
+    }
+    if (const std::size_t rest = size - facets * facet_size; rest > 0)
+        mesh.repairs.push_back("left out " + counted(rest, "byte") + " behind the last facet");
     return mesh;
 }
 
 class AsciiStl {
 public:
-    explicit AsciiStl(const InputFile& file) : scanner_(file) {}
+    explicit AsciiStl(const InputFile& file) : file_(file), scanner_(file) {}
 
     Mesh read() {
-        while (!scanner_.at_end()) {
-            expect("solid");
-            scanner_.next_line(); // the name is free text
+        for (std::string_view word = first_word(); !word.empty(); word = scanner_.word()) {
+            if (!same(word, "solid")) complain(word, "solid");
+            std::string name = printable(scanner_.rest_of_line());
+            if (name.empty()) name = "solids[" + std::to_string(solids_) + "]";
+            ++solids_;
+            groups_.begin(std::move(name), mesh_.triangles.size());
             while (read_facet()) {
             }
             scanner_.next_line(); // the name again
         }
         return std::move(mesh_);
     }
+    const Groups& groups() const { return groups_; }
 
 private:
+    /// Lines before the first one of the format are comments.
+    std::string_view first_word() {
+        constexpr std::array<std::string_view, 7> statements{"solid",   "facet",    "outer",   "vertex",
+                                                             "endloop", "endfacet", "endsolid"};
+        for (std::string_view word = scanner_.word(); !word.empty(); word = scanner_.word()) {
+            if (std::ranges::any_of(statements, [&](std::string_view statement) { return same(word, statement); }))
+                return word;
+            scanner_.next_line();
+        }
+        file_.fail(
+            "is neither a text STL file, which has a line `solid`, nor a binary one; it is damaged or of another "
+            "format");
+    }
+
     // False at `endsolid`.
     bool read_facet() {
         const std::string_view word = scanner_.word();
@@ -83,32 +157,44 @@ private:
                                     : in_quotes(found) + " where " + wanted + " should be");
     }
 
+    const InputFile& file_;
     TextScanner scanner_;
     Mesh mesh_;
+    Groups groups_;
+    std::size_t solids_ = 0;
 };
+
+/// Many binary files start with the word `solid`, too. Their count tells them apart: its last byte is less than any of
+/// a text up to 150 million facets. Larger files are told by their length.
+bool is_binary(const InputFile& file) {
+    const std::size_t announced = announced_facets(file);
+    const bool utf16 = file.bytes.starts_with("\xff\xfe") || file.bytes.starts_with("\xfe\xff");
+    return file.bytes.size() == header_size + announced * facet_size
+           || (!utf16 && (announced < 0x09000000u || announced == 0xffffffffu));
+}
+
+/// With the solids of a text file.
+std::pair<Mesh, Groups> read_solids(const InputFile& file) {
+    if (file.bytes.size() < header_size)
+        file.fail("has " + counted(file.bytes.size(), "byte")
+                  + ", fewer than an STL file with a facet; it is truncated or of another format");
+    if (is_binary(file)) return {read_binary(file), {}};
+    InputFile room;
+    AsciiStl text(as_utf8(file, room));
+    Mesh mesh = text.read();
+    return {std::move(mesh), text.groups()};
+}
 
 } // namespace
 
 Mesh read_stl(const InputFile& file) {
-    // Many binary files start with the word `solid` too: only the length tells them apart.
-    const std::size_t size = file.bytes.size();
-    const std::uint64_t facets = size >= header_size ? read_bytes<std::uint32_t>(file.bytes.data() + 80) : 0;
-    if (size >= header_size && size == header_size + facets * facet_size) return read_binary(file, facets);
-    InputFile room;
-    const InputFile& text = as_utf8(file, room);
-    const std::size_t mark = text.bytes.starts_with("\xef\xbb\xbf") ? 3 : 0; // of the byte order
-    const std::size_t start = text.bytes.find_first_not_of(" \t\r\n", mark);
-    if (start != std::string::npos
-        && (text.bytes.compare(start, 5, "solid") == 0 || text.bytes.compare(start, 5, "SOLID") == 0)) {
-        return AsciiStl(text).read();
-    }
-    if (size < header_size) {
-        file.fail("is neither an ASCII STL file (`solid`) nor long enough for a binary one; it is truncated or of "
-                  "another format");
-    }
-    file.fail("a binary STL file of " + std::to_string(facets) + " facets has "
-              + std::to_string(header_size + facets * facet_size) + " bytes, this one " + std::to_string(size)
-              + "; it is truncated or damaged");
+    return read_solids(file).first;
+}
+
+std::vector<AssemblyPart> read_stl_parts(const InputFile& file, std::vector<std::string>& notes) {
+    auto [mesh, solids] = read_solids(file);
+    mesh.name = file.name();
+    return solids.parts(std::move(mesh), true, notes);
 }
 
 } // namespace raycontact

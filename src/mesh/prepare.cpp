@@ -9,6 +9,7 @@
 #include "mesh/lowest_equal.h"
 #include "mesh/nesting.h"
 #include "mesh/predicates.h"
+#include "number_text.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,6 +28,7 @@ PreparedMesh weld(const Mesh& mesh) {
     const std::vector<std::uint32_t> lowest = lowest_equal(places);
     PreparedMesh prepared;
     prepared.name = mesh.name;
+    prepared.report.repairs = mesh.repairs;
     for (const auto& [a, b, c] : mesh.triangles) prepared.triangles.push_back({lowest[a], lowest[b], lowest[c]});
     prepared.triangle_index.resize(mesh.triangles.size());
     std::iota(prepared.triangle_index.begin(), prepared.triangle_index.end(), 0u);
@@ -45,10 +47,6 @@ std::vector<std::uint32_t> triangles_with_area(std::span<const Triangle> triangl
     for (std::uint32_t i = 0; i < triangles.size(); ++i)
         if (!is_degenerate(triangles[i], exact)) with_area.push_back(i);
     return with_area;
-}
-
-std::string counted(std::size_t count, const std::string& noun) {
-    return std::to_string(count) + " " + noun + (count == 1 ? "" : "s");
 }
 
 /// Drops what drop_degenerate() finds, and reports how many.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <raycontact/scene.h>
 
-#include "broadphase/sweep_and_prune.h"
+#include "broadphase/world_box.h"
 #include "executor/float_environment.h"
 #include "query/checks.h"
 #include "query/shape_pair.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "query/shape_pair.h"
 
-#include "broadphase/sweep_and_prune.h"
+#include "broadphase/world_box.h"
 
 #include <algorithm>
 #include <cmath>

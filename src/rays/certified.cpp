@@ -259,6 +259,7 @@ void CertifiedRays::cast(const Update& update, RayBatch& batch) {
 // width.
 NearLists::Search CertifiedRays::search_of(const DueNear& due, const KeptNear& kept, bool moves, double margin) {
     const bool empty = kept.count() == 0;
+    if (due.once) return {due.pair, 0, 0, static_cast<float>(margin), 0, moves};
     double more = empty ? std::clamp(6 * due.speed, 0.005 * due.size, 0.015 * due.size)
                         : std::clamp(6 * due.speed, 0.002 * due.size, 0.006 * due.size);
     if (more < 4 * due.speed) more = 0;

@@ -158,8 +158,11 @@ void DuePairs::check_slice(const Update& update, CertifiedPairs& table, std::uin
         Slack& slack = table.hot(i);
         const PlacedBody &a = update.bodies[pair.first], &b = update.bodies[pair.second];
         const bool may_hurry = !update.settings.paper.displacement_threshold;
+        // A new pair that rests may be a question that is asked once: no list is made for steps to come.
+        const bool once = !slack.known && speed == 0 && may_hurry;
+        slack.known = true;
         const bool rays_valid = !slack.casts && (slack.metres > 0 || extend_rays(update, a, b, state, slack));
-        if (!rays_valid && may_hurry && (speed > fastest * size || state.as_standard > 0)) {
+        if (!rays_valid && may_hurry && (once || speed > fastest * size || state.as_standard > 0)) {
             slice.as_standard.add() = i;
             if (state.as_standard > 0) --state.as_standard;
         } else if (!rays_valid) {
@@ -169,7 +172,7 @@ void DuePairs::check_slice(const Update& update, CertifiedPairs& table, std::uin
         if (speculative) slack.margin = static_cast<float>(1.000001 * speculative_margin(update.settings, a, b));
         const double way = way_of(i, slack);
         const DueNear due{
-            i, size, speed, speculative && is_due(slack.points, way), edges && is_due(slack.edges, way), way > 0};
+            i, size, speed, speculative && is_due(slack.points, way), edges && is_due(slack.edges, way), way > 0, once};
         if ((due.points || due.edges) && !slack.casts && extend_near(update, a, b, state, slack, way > 0)) return;
         if (due.points || due.edges || !slack.all) slice.near.add() = due;
     };

@@ -49,6 +49,7 @@ struct Slack {
     double edges = -1;       ///< that it may come nearer before its near edges are sought anew
     double points = -1;      ///< the same of its near vertices
     float margin = 0;        ///< within which it has speculative contacts
+    bool known = false;      ///< it was asked about in a step before
     bool open = false;       ///< it has lists
     bool casts = false;      ///< it has rays, to be decided in every step
     bool apart = false;      ///< as AskedPair's, while its near edges last
@@ -76,6 +77,7 @@ struct DueNear {
     double size, speed; ///< of the smaller body's box; metres a step
     bool points, edges; ///< they are due; edges: else they are sought only if some are missing
     bool moves;         ///< it hurries
+    bool once;          ///< this may be its only step
 };
 
 using CertifiedPairs = PairTable<CertifiedPair, Slack>;

@@ -362,4 +362,18 @@ TEST_F(CollideByHand, RefusesHalfAPose) {
     expect_refused(run({"--at", "1,2,inf"}), "not a finite number");
 }
 
+TEST_F(Collide, TablePrintsNumbersInFull) {
+    // As on a map: the sixth digit is a metre or ten.
+    const json pair{{"a", "cube.obj"},
+                    {"b", "cube.obj"},
+                    {"pose_a", translation(500000.125, 5400000.25, 0)},
+                    {"pose_b", translation(500000.875, 5400000.75, 0.5)}};
+    const auto table = run_vertices(json::array({pair}), {});
+    EXPECT_EQ(table.status, 0) << table.err;
+    EXPECT_NE(table.out.find("  500000.625  5400000.75"), std::string::npos) << table.out;
+    json apart = pair;
+    apart["pose_b"] = translation(500100.125 + 1.0 / 1024, 5400000.25, 0);
+    EXPECT_NE(run(json::array({apart}), {}).out.find("apart by 99.0009765625 m\n"), std::string::npos);
+}
+
 } // namespace

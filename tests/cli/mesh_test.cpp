@@ -138,4 +138,14 @@ TEST_F(MeshCommand, CollideAndRunTakeTheSameWord) {
     EXPECT_EQ(run({"run", "--mesh", "nested.obj", "--cavities", "make", "--steps", "2", "--bodies", "2"}).status, 0);
 }
 
+TEST_F(MeshCommand, SaysWhatReadingLeftOut) {
+    folder_.write("mixed.obj", cube_obj() + "l 1 2\np 3 4\nf 1 2\nv 1 1 -1.#IND\n");
+    const auto result = run({"mesh", "mixed.obj", "--json"});
+    EXPECT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(nlohmann::json::parse(result.out)["repairs"],
+              nlohmann::json({"left out 1 vertex that is not finite and that no triangle uses",
+                              "left out 1 face of two corners", "left out 2 points (p)", "left out 1 line (l)"}));
+    EXPECT_NE(run({"mesh", "mixed.obj"}).out.find("\nrepair             left out 2 points (p)\n"), std::string::npos);
+}
+
 } // namespace

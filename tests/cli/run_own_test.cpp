@@ -48,6 +48,24 @@ TEST_F(RunOwn, MeshesFallOnASlab) {
               log["hash"]);
 }
 
+TEST_F(RunOwn, SaysWhatIsWrongWithAMeshThatStandsStill) {
+    const std::string corners = "v -9 -9 0\nv 9 -9 0\nv 9 9 0\nv -9 9 0\n";
+    folder_.write("up.obj", corners + "f 1 2 3 4\n");
+    folder_.write("down.obj", corners + "f 4 3 2 1\n");
+    const auto said = [&](const char* ground) {
+        return run_program({"run", "--mesh", "cube.obj", "--bodies", "1", "--steps", "2", "--ground", ground},
+                           folder_.path())
+            .err;
+    };
+    const std::string open =
+        ": stands still and is open, with 4 border edges: bodies that come from behind its faces pass it";
+    EXPECT_NE(said("up.obj").find("up.obj" + open + "\n"), std::string::npos) << said("up.obj");
+    EXPECT_NE(said("down.obj").find("down.obj" + open + "; its faces look down, so what falls on it falls through"),
+              std::string::npos)
+        << said("down.obj");
+    EXPECT_EQ(said("ramp.obj").find("stands still"), std::string::npos) << said("ramp.obj");
+}
+
 TEST_F(RunOwn, FallOnAMeshOfOnesOwn) {
     const json log = run({"--mesh", "cube.obj", "--bodies", "4", "--steps", "120", "--ground", "ramp.obj"});
     EXPECT_GT(log["contacts"].get<int>(), 0);

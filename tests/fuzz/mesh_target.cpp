@@ -12,7 +12,9 @@
 #include <raycontact/mesh.h>
 #include <raycontact/shape.h>
 
+#include <string>
 #include <string_view>
+#include <vector>
 
 using namespace raycontact;
 
@@ -26,9 +28,14 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
         if (size == 0) return; // InputFile::read refuses it
         const Mesh mesh = RAYCONTACT_FUZZ_READER(file);
         check_mesh(mesh, file.shown);
-        if constexpr (std::string_view(RAYCONTACT_FUZZ_FILE).ends_with(".gltf")) {
+        constexpr std::string_view name = RAYCONTACT_FUZZ_FILE;
+        if constexpr (!name.ends_with(".ply") && !name.ends_with(".off")) {
+            constexpr auto read_parts = name.ends_with(".gltf")  ? &read_gltf_parts
+                                        : name.ends_with(".obj") ? &read_obj_parts
+                                                                 : &read_stl_parts;
             std::size_t triangles = 0;
-            for (const AssemblyPart& part : read_gltf_parts(file)) {
+            std::vector<std::string> left_out;
+            for (const AssemblyPart& part : read_parts(file, left_out)) {
                 check_mesh(*part.mesh, part.name);
                 triangles += part.mesh->triangles.size();
             }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // fuzz_seeds FOLDER: writes a sound input or two for each target whose inputs are not texts. What else the corpora
-// hold, fuzzers found.
+// hold, fuzzers found, or hands wrote as other programs do.
 #include "fuzz/recording_input.h"
 #include "tests/recording/sample.h"
 #include "tests/unit/mesh/formats.h"

@@ -120,6 +120,11 @@ TEST(FuzzMesh, BinaryStl) {
 TEST(FuzzMesh, AsciiPly) {
     fuzz(&read_ply, as_ascii_ply(sound()), rounds);
 }
+TEST(FuzzMesh, PlyStrips) {
+    std::string text = as_ascii_ply(sound());
+    text.replace(text.find("element face"), 12, "element tristrips");
+    fuzz(&read_ply, text, rounds);
+}
 TEST(FuzzMesh, BinaryPly) {
     fuzz(&read_ply, as_binary_ply(sound()), rounds);
 }

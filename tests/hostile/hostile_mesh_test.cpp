@@ -179,6 +179,7 @@ TEST(HostileMesh, Obj) {
     const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
     const std::vector<std::string> tails{"f 0 1 2\n",
                                          "f -4 -2 -1\n",
+                                         "f 1\n",
                                          "f 1 2\n",
                                          "f 1 2 x\n",
                                          "f 1 2 3.5\n",
@@ -196,15 +197,14 @@ TEST(HostileMesh, Obj) {
                                          "v +-1 0 0\nf 1 2 3",
                                          "f 1 2 \\"};
     for (const std::string& tail : tails) refused(folder.write("t.obj", three + tail));
-    refused(folder.write("z.obj", three + std::string("f 1 2 3\n\0\0\0\0", 12)));
+    refused(folder.write("z.obj", three + std::string("f 1 2 3\n\0\0\0\0f 1 2 3\n", 20)));
 }
 
 TEST(HostileMesh, Stl) {
     const TempFolder folder;
     std::string counted = as_binary_stl(sound());
-    counted.replace(80, 4, "\xff\xff\xff\xff");
+    counted.replace(80, 4, "\xff\xff\xff\x7f");
     EXPECT_NE(refused(folder.write("huge.stl", counted)).find("huge.stl"), std::string::npos);
-    refused(folder.write("longer.stl", as_binary_stl(sound()) + "x"));
     refused(folder.write("mixed.stl", as_ascii_stl(sound()) + as_binary_stl(sound())));
     refused(folder.write("mixed2.stl", as_ascii_stl(sound()).substr(0, 200) + as_binary_stl(sound()).substr(84)));
     refused(folder.write("four.stl", replaced(as_ascii_stl(sound()), "endloop", "vertex 0 0 0\nendloop")));
@@ -247,6 +247,12 @@ TEST(HostileMesh, Ply) {
                          "ply\nformat ascii 1.0\nelement vertex 1\nproperty int x\nproperty int y\nproperty int z\n"
                          "element face 1\nproperty list uint int vertex_index\nend_header\n0 0 0\n4294967295 0 0 0\n"));
     refused(folder.write("point.ply", replaced(ascii, "3 0 4 5", "1 0")));
+    const std::string strips = replaced(ascii, "element face 48", "element tristrips 48");
+    EXPECT_NO_THROW(load_mesh(folder.write("strips.ply", strips)));
+    for (const char* with : {"3 0 4 24", "3 0 4 -2", "3 0 4 x", "4000000000 0 4 5", "-1 0 4 5", "400 0 4 5"}) {
+        SCOPED_TRACE(with);
+        refused(folder.write("strips.ply", replaced(strips, "3 0 4 5", with)));
+    }
 }
 
 TEST(HostileMesh, PlyHeaderLinesThatMayBeALostProperty) {
@@ -288,7 +294,8 @@ TEST(HostileMesh, Off) {
                                                           {"OFF", "nOFF"},
                                                           {"OFF", "COUGH"},
                                                           {"3 0 4 5", "4000000000 0 4 5"},
-                                                          {"3 0 4 5", "2 0 4"},
+                                                          {"3 0 4 5", "1 0"},
+                                                          {"3 0 4 5", "2 0 24"},
                                                           {"3 0 4 5", "3 0 -4 5"},
                                                           {"3 0 4 5", "3 0 4"},
                                                           {"3 0 4 5", "3 0 4 5e0"}}) {

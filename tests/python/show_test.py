@@ -164,6 +164,15 @@ def test_without_contacts_bodies_are_opaque(scene, tmp_path):
     assert all(node["opacity"] is None for _, node in player.batches())
 
 
+def test_a_shape_or_a_mesh_is_a_page(scene, tmp_path):
+    shape = scene.shape(0)
+    for what in (shape, rc.Mesh(shape.vertices, shape.triangles)):
+        rc.show(what, out=tmp_path / "page.html")
+        ((_, body),) = Player(tmp_path / "page.html").batches()
+        assert np.array_equal(body["vertices"].reshape(-1, 3), shape.vertices.astype(np.float32))
+        assert np.array_equal(body["faces"].reshape(-1, 3), shape.triangles)
+
+
 def test_an_empty_scene_is_a_page(tmp_path):
     rc.show(rc.Scene(), out=tmp_path / "page.html")
     assert Player(tmp_path / "page.html").batches() == []
@@ -205,7 +214,7 @@ def test_a_recording_of_the_program(tmp_path):
 
 def test_refuses_what_it_cannot_show(scene, recording, tmp_path):
     page = tmp_path / "page.html"
-    wrong = ((tmp_path / "none.glb", "none.glb"), (3, "neither a Scene"), (__file__, "show_test.py"))
+    wrong = ((tmp_path / "none.glb", "none.glb"), (3, "no Scene, Shape or Mesh"), (__file__, "show_test.py"))
     for what, words in wrong:
         with pytest.raises(rc.InputError, match=words):
             rc.show(what, out=page)

@@ -103,7 +103,8 @@ def main(arguments: list[str] | None = None) -> int:
     clash = command("clash", _clash, "Find the parts of an assembly that intersect")
     for sub in (mesh, collide, clash):
         sub.add_argument("--scale", type=float, default=1.0, help="multiplies coordinates; 0.001 for millimetres")
-    clash.add_argument("files", nargs="+", metavar="FILE", help="of a glTF file each node with a mesh is a part")
+    words = "parts are nodes of glTF, objects or groups of OBJ, solids of a text STL"
+    clash.add_argument("files", nargs="+", metavar="FILE", help=words)
     clash.add_argument("--against", action="append", metavar="SET", help="test these (* and ?) against all others")
     clash.add_argument("--clearance", type=float, default=0.0, metavar="LENGTH", help="also find those so near")
     clash.add_argument("--tolerance", type=float, default=0.0, metavar="LENGTH", help="up to this they are touching")

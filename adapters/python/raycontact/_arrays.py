@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -28,46 +29,76 @@ def as_numbers(value: Any, what: str, kinds: str = "fiu") -> NDArray[Any]:
     return array
 
 
-def as_points(value: Any, what: str) -> tuple[NDArray[np.float64], bool]:
-    """(n, 3) float64, and whether a single (3,) was given."""
+def as_points(value: Any, what: str) -> NDArray[np.float64]:
+    """(..., 3) float64."""
     array = as_numbers(value, what)
-    if array.ndim in (1, 2) and array.shape[-1] == 3:
-        return np.ascontiguousarray(array.reshape(-1, 3), np.float64), array.ndim == 1
+    if array.ndim > 0 and array.shape[-1] == 3:
+        return np.ascontiguousarray(array, np.float64)
     if array.size == 0 and array.ndim == 1:
-        return np.empty((0, 3)), False
-    raise InputError(f"{what}: has shape {array.shape}; give (3,) or (n, 3)")
+        return np.empty((0, 3))
+    raise InputError(f"{what}: has shape {array.shape}; give (3,) or (..., 3)")
 
 
-def as_poses(value: Any, what: str, rigid: bool = False) -> tuple[NDArray[np.float64], bool]:
-    """(n, 4, 4) float64, and whether a single (4, 4) was given. None is the identity.
+def as_poses(value: Any, what: str, rigid: bool = False) -> NDArray[np.float64]:
+    """(..., 4, 4) float64. None is the identity.
 
     rigid: looks for that here, where the C++ half would name a pose otherwise than the user."""
     if value is None:
-        return np.eye(4)[None], True
+        return np.eye(4)
     array = as_numbers(value, what)
-    if array.ndim not in (2, 3) or array.shape[-2:] != (4, 4):
+    if array.ndim < 2 or array.shape[-2:] != (4, 4):
         if array.size == 0 and array.ndim == 1:
-            return np.empty((0, 4, 4)), False
-        raise InputError(f"{what}: has shape {array.shape}; give (4, 4) or (n, 4, 4)")
-    poses = np.ascontiguousarray(array.reshape(-1, 4, 4), np.float64)
-    _refuse(~np.isfinite(poses).all(axis=(1, 2)), array.ndim, what, "an entry is not a finite number")
-    last_row = (np.abs(poses[:, 3] - (0, 0, 0, 1)) <= 1e-4).all(axis=1)
-    _refuse(
-        ~last_row, array.ndim, what, "the last row is not 0 0 0 1; matrices have the translation in the last column"
-    )
+            return np.empty((0, 4, 4))
+        raise InputError(f"{what}: has shape {array.shape}; give (4, 4) or (..., 4, 4)")
+    poses = np.ascontiguousarray(array, np.float64)
+    _refuse(~np.isfinite(poses).all(axis=(-2, -1)), what, "an entry is not a finite number")
+    last_row = (np.abs(poses[..., 3, :] - (0, 0, 0, 1)) <= 1e-4).all(axis=-1)
+    _refuse(~last_row, what, "the last row is not 0 0 0 1; matrices have the translation in the last column")
     if rigid:
-        turn = poses[:, :3, :3]
-        shear = np.abs(np.swapaxes(turn, 1, 2) @ turn - np.eye(3)).max(axis=(1, 2), initial=0.0)
+        turn = poses[..., :3, :3]
+        shear = np.abs(np.swapaxes(turn, -2, -1) @ turn - np.eye(3)).max(axis=(-2, -1), initial=0.0)
         bent = (shear > 1e-4) | (np.linalg.det(turn) <= 0)
-        _refuse(
-            bent, array.ndim, what, "not rigid to 1e-4 (sheared, scaled or mirrored); nearest_rigid mends what drifted"
-        )
-    return poses, array.ndim == 2
+        _refuse(bent, what, "not rigid to 1e-4 (sheared, scaled or mirrored); nearest_rigid mends what drifted")
+    return poses
 
 
-def _refuse(wrong: Any, ndim: int, what: str, why: str) -> None:
+def as_pose(value: Any, what: str, rigid: bool = False) -> NDArray[np.float64]:
+    """(4, 4) float64."""
+    pose = as_poses(value, what, rigid)
+    if pose.ndim != 2:
+        raise InputError(f"{what}: has shape {pose.shape}; give one, (4, 4)")
+    return pose
+
+
+def _refuse(wrong: Any, what: str, why: str) -> None:
     if wrong.any():
-        raise InputError(f"{what}{'' if ndim == 2 else f'[{int(np.argmax(wrong))}]'}: {why}")
+        place = ", ".join(str(i) for i in np.argwhere(wrong)[0])
+        raise InputError(f"{what}{f'[{place}]' if place else ''}: {why}")
+
+
+class Batch:
+    """Arguments that belong together, by names: of each the dimensions before those of a single item. They fit as
+    NumPy's broadcasting says. The C++ half takes flat lists, of one item or of all."""
+
+    def __init__(self, **leads: tuple[int, ...]) -> None:
+        try:
+            self.shape = np.broadcast_shapes(*leads.values())
+        except ValueError:
+            given = ", ".join(f"{name} {lead}" for name, lead in leads.items() if lead)
+            raise InputError(f"{given} do not fit together; give as many, or one") from None
+
+    def flat(self, items: NDArray[Any], lead: tuple[int, ...]) -> NDArray[Any]:
+        """(1, ...) or (n, ...), contiguous."""
+        tail, count = items.shape[len(lead) :], math.prod(lead)
+        if count != 1:
+            items, count = np.broadcast_to(items, self.shape + tail), math.prod(self.shape)
+        return np.ascontiguousarray(items).reshape(count, *tail)
+
+    def answers(self, columns: tuple[NDArray[Any], ...]) -> tuple[Any, ...]:
+        """Of a single item what the columns hold, else arrays of the batch's shape."""
+        if self.shape == ():
+            return tuple(column[0] if column.ndim > 1 else column[0].item() for column in columns)
+        return tuple(column.reshape(self.shape + column.shape[1:]) for column in columns)
 
 
 def as_ids(value: Any, what: str) -> tuple[NDArray[np.int64], bool]:
@@ -121,10 +152,3 @@ def as_count(value: Any, what: str) -> int:
     if not 0 <= count < 2**32:
         raise InputError(f"{what}: {count} is not in 0 to {2**32 - 1}")
     return count
-
-
-def one_of(columns: tuple[NDArray[Any], ...], is_one: bool) -> tuple[Any, ...]:
-    """Of a single item what it holds, not arrays over one item."""
-    if not is_one:
-        return columns
-    return tuple(column[0] if column.ndim > 1 else column[0].item() for column in columns)

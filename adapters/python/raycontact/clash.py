@@ -11,9 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
-from ._arrays import as_count, as_length, as_poses
+from ._arrays import as_count, as_length, as_pose
 from ._core import InputError
-from .mesh import Mesh, scaled_parts
+from .mesh import Mesh, scaled_parts, tell
 
 
 class Clash(NamedTuple):
@@ -160,7 +160,7 @@ def clash(
     given, files, parents = _parts_of(assembly)
     parts = scaled_parts(given, scale)
     if len(parts) < 2:
-        raise InputError(f"clash: {len(parts)} part given; give several, or a glTF file whose nodes are parts")
+        raise InputError(f"clash: {len(parts)} part given; give several, or a file that has parts: nodes, objects, groups or solids")
     names = [part.name for part in parts]
     poses = np.ascontiguousarray(np.stack([part.pose for part in parts]))
     meshes = [part.mesh._core for part in parts]
@@ -206,14 +206,14 @@ def _parts_of(assembly: Any) -> _Parts:
     if not isinstance(assembly, (list, tuple)) or hasattr(assembly, "faces"):
         raise InputError(f"clash: {type(assembly).__name__} is no file, and no list or dict of files or parts")
     if assembly and all(isinstance(item, (str, os.PathLike)) for item in assembly):
-        return _core.load_parts([os.fspath(file) for file in assembly])
+        parts, left_out = _core.load_parts([os.fspath(file) for file in assembly])
+        tell(left_out)
+        return parts  # with files and parents
     made: dict[int, Mesh] = {}
     parts = []
     for i, item in enumerate(assembly):
         name, mesh, pose = item if isinstance(item, tuple) and len(item) == 3 else (None, item, None)
-        matrices, one = as_poses(pose, f"part {i}: pose", rigid=True)
-        if not one:
-            raise InputError(f"part {i}: pose: give one, (4, 4)")
+        matrices = as_pose(pose, f"part {i}: pose", rigid=True)[None]
         if id(mesh) not in made:
             made[id(mesh)] = mesh if isinstance(mesh, Mesh) else Mesh(mesh)
         own = made[id(mesh)]

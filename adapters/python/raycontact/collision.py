@@ -14,7 +14,7 @@ from typing import Any, NamedTuple, Optional, TypeVar, cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._arrays import as_poses
+from ._arrays import as_pose
 from ._boxes import Boxes, Pairs, boxes_of, pairs_within, some_near_pairs
 from ._core import InputError
 from ._shared_shapes import shared_shape
@@ -362,7 +362,7 @@ class _Stretched(NamedTuple):
 
 def _without_stretch(mesh: Any, transform: ArrayLike, what: str) -> tuple[Any, NDArray[np.float64]]:
     """A mesh and a rigid transform that place it as any transform does (polar decomposition)."""
-    pose = _one_pose(transform, what).copy()
+    pose = as_pose(transform, f"{what}: transform").copy()
     if _fault(pose) is None or not (hasattr(mesh, "vertices") and hasattr(mesh, "faces")):
         return mesh, pose
     linear = pose[:3, :3]
@@ -399,16 +399,9 @@ def _list_of(manager: Any) -> _Objects:
     return manager._list()
 
 
-def _one_pose(transform: Optional[ArrayLike], what: str) -> NDArray[np.float64]:
-    matrices, one = as_poses(transform, f"{what}: transform")
-    if not one:
-        raise InputError(f"{what}: transform: has shape {matrices.shape}; give one, (4, 4)")
-    return matrices[0]
-
-
 def _rigid(transform: Optional[ArrayLike], what: str) -> NDArray[np.float64]:
     """A copy: what is the user's may change."""
-    pose = _one_pose(transform, what)
+    pose = as_pose(transform, f"{what}: transform")
     fault = _fault(pose)
     if fault:
         raise InputError(f"{what}: transform: {fault}")

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import os
+import warnings
 from collections.abc import Iterable
 from typing import Any, NamedTuple, Optional, Protocol, Union, overload
 
@@ -99,6 +100,11 @@ class Mesh:
         return self._core.name
 
     @property
+    def repairs(self) -> list[str]:
+        """What reading a file left out or mended, in words with counts; `Shape.report.repairs` has them, too."""
+        return self._core.repairs
+
+    @property
     def vertices(self) -> NDArray[np.float64]:
         """(n, 3) float64, metres, body frame. Shows the mesh's own memory; not writable."""
         return self._core.vertices
@@ -112,7 +118,7 @@ class Mesh:
     """The same, by the name that other libraries use."""
 
     def __reduce__(self) -> Any:
-        return _unpickled, (self.vertices, self.triangles, self.name)
+        return _unpickled, (self.vertices, self.triangles, self.name, self.repairs)
 
     def __repr__(self) -> str:
         return f"<Mesh {self.name!r}: {len(self.vertices)} vertices, {len(self.triangles)} triangles>"
@@ -122,11 +128,13 @@ MeshLike = Union[Mesh, str, os.PathLike[str], HasFaces]
 """A Mesh, the path of a file, or an object with `vertices` and `faces`, as those of trimesh have."""
 
 
-def _unpickled(vertices: NDArray[np.float64], triangles: NDArray[np.uint32], name: str) -> Mesh:
-    return Mesh(vertices, triangles, name=name)
+def _unpickled(vertices: NDArray[np.float64], triangles: NDArray[np.uint32], name: str, repairs: list[str]) -> Mesh:
+    return Mesh._wrap(_make(vertices, triangles, 1.0, name, repairs))
 
 
-def _make(vertices: ArrayLike, triangles: ArrayLike, scale: float, name: str) -> _core.Mesh:
+def _make(
+    vertices: ArrayLike, triangles: ArrayLike, scale: float, name: str, repairs: Iterable[str] = ()
+) -> _core.Mesh:
     points = as_numbers(vertices, "vertices")
     corners = as_numbers(triangles, "triangles", "iu")
     if points.ndim != 2 or points.shape[1] != 3:
@@ -140,17 +148,17 @@ def _make(vertices: ArrayLike, triangles: ArrayLike, scale: float, name: str) ->
     by = as_scale(scale)
     if by != 1.0:
         points = points * by
-    return _core.make_mesh(points, np.ascontiguousarray(corners, np.uint32), name)
+    return _core.make_mesh(points, np.ascontiguousarray(corners, np.uint32), name, list(repairs))
 
 
 def _scaled(core: _core.Mesh, scale: float, name: Optional[str]) -> _core.Mesh:
-    return _make(core.vertices, core.triangles, scale, core.name if name is None else name)
+    return _make(core.vertices, core.triangles, scale, core.name if name is None else name, core.repairs)
 
 
 class AssemblyPart(NamedTuple):
     """A part of an assembly.
 
-    name: of its node, "nodes[3]" where it has none; or of its file.
+    name: of its node, "nodes[3]" where it has none, group or solid; or of its file.
     mesh: metres, in the part's own frame, scaled as the file scales it. Parts that are one mesh in several places share
         it.
     pose: (4, 4) float64, rigid, from the part's frame to that of the assembly, metres.
@@ -162,12 +170,21 @@ class AssemblyPart(NamedTuple):
 
 
 def load_assembly(file: Union[str, os.PathLike[str]], *, scale: float = 1.0) -> list[AssemblyPart]:
-    """Of a glTF file each node of its scene that places a mesh, in node order; of any other file its one mesh.
+    """Of a glTF file each node of its scene that places a mesh, in node order; of OBJ its objects or groups, of text STL
+    its solids; of any other file its one mesh. What is left out is told by a UserWarning that names it.
 
     scale: what coordinates and places are multiplied by; 0.001 for a file in millimetres. Raises InputError as `Mesh`
     does for a file.
     """
-    return scaled_parts(_core.load_assembly(os.fspath(file)), scale)
+    parts, left_out = _core.load_assembly(os.fspath(file))
+    tell(f"{os.fspath(file)}: {words}" for words in left_out)
+    return scaled_parts(parts, scale)
+
+
+def tell(left_out: Iterable[str]) -> None:
+    """What was left out of files, to the caller's caller."""
+    for words in left_out:
+        warnings.warn(words, stacklevel=3)
 
 
 def scaled_parts(parts: Iterable[tuple[str, _core.Mesh, NDArray[np.float64]]], scale: float) -> list[AssemblyPart]:

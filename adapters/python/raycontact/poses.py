@@ -59,13 +59,12 @@ def pose_from_quaternion(translation: ArrayLike, quaternion: ArrayLike) -> NDArr
 
 
 def nearest_rigid(poses: ArrayLike) -> NDArray[np.float64]:
-    """The rigid poses nearest to (4, 4) or (n, 4, 4) that are not: drifted, scaled or sheared (polar decomposition).
+    """The rigid poses nearest to (..., 4, 4) that are not: drifted, scaled or sheared (polar decomposition).
 
     Gives float64 of the same shape; translations stay. Raises InputError for one that is not finite, mirrored or flat.
     """
-    matrices, one = as_poses(poses, "poses")
-    rigid = _core.nearest_rigid(matrices)
-    return rigid[0] if one else rigid
+    matrices = as_poses(poses, "poses")
+    return _core.nearest_rigid(matrices.reshape(-1, 4, 4)).reshape(matrices.shape)
 
 
 __all__ = ["nearest_rigid", "pose", "pose_from_quaternion"]

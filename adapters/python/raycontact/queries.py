@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 """Questions about one or two shapes, without a scene.
 
-Each takes one item or many: shapes one or a list, poses (4, 4) or (n, 4, 4), points (3,) or (n, 3). What is there once
-counts for all items. Of many, answers are arrays over the items, found by several threads; Ctrl-C ends them. Poses are
-rigid matrices from the body's frame to the world, None the identity; lengths are metres. Where an answer is called
-exact, it is that for the mesh's own double coordinates, rotated and moved, without a tolerance.
+Each takes one item or many: shapes one or a list, poses (4, 4) or (..., 4, 4), points (3,) or (..., 3). They fit
+together as NumPy broadcasts: what is there once counts for all, and l shapes with poses (n, l, 4, 4) have answers
+(n, l). Of many, answers are arrays over the items, found by several threads; Ctrl-C ends them. Where docstrings say
+(n,), the batch may have more dimensions. Poses are rigid matrices from the body's frame to the world, None the
+identity; lengths are metres. Where an answer is called exact, it is that for the mesh's own double coordinates, rotated
+and moved, without a tolerance.
 """
 
 from __future__ import annotations
@@ -15,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._arrays import as_count, as_length, as_points, as_poses, one_of
+from ._arrays import Batch, as_count, as_length, as_points, as_poses
 from .contacts import PairContacts
 from .scene import as_settings
 from .shape import ShapeLike, Shapes, as_shape, as_shapes
@@ -68,18 +70,37 @@ class RayHit(NamedTuple):
     triangle: Union[int, NDArray[np.int64]]
 
 
-class _Pairs:
+class _Pairs(Batch):
     """Pairs of placed shapes for the C++ half."""
 
     def __init__(
         self, a: Shapes, b: Shapes, pose_a: Optional[ArrayLike], pose_b: Optional[ArrayLike], threads: int
     ) -> None:
-        self.a, one_a = as_shapes(a, "a")
-        self.b, one_b = as_shapes(b, "b")
-        self.pose_a, one_pose_a = as_poses(pose_a, "pose_a", rigid=True)
-        self.pose_b, one_pose_b = as_poses(pose_b, "pose_b", rigid=True)
-        self.is_one = one_a and one_b and one_pose_a and one_pose_b
-        self.core = _core.PlacedPairs(self.a, self.pose_a, self.b, self.pose_b, as_count(threads, "threads"))
+        shapes_a, lead_a = as_shapes(a, "a")
+        shapes_b, lead_b = as_shapes(b, "b")
+        poses_a, poses_b = as_poses(pose_a, "pose_a", rigid=True), as_poses(pose_b, "pose_b", rigid=True)
+        super().__init__(a=lead_a, b=lead_b, pose_a=poses_a.shape[:-2], pose_b=poses_b.shape[:-2])
+        self.core = _core.PlacedPairs(
+            self._listed(shapes_a, lead_a),
+            self.flat(poses_a, poses_a.shape[:-2]),
+            self._listed(shapes_b, lead_b),
+            self.flat(poses_b, poses_b.shape[:-2]),
+            as_count(threads, "threads"),
+        )
+
+    def _listed(self, shapes: list[_core.Shape], lead: tuple[int, ...]) -> list[_core.Shape]:
+        return [shapes[i] for i in self.flat(np.arange(len(shapes)).reshape(lead), lead)]
+
+
+class _Placed(Batch):
+    """Points or rays at one shape that has poses."""
+
+    def __init__(self, pose: Optional[ArrayLike], **vectors: ArrayLike) -> None:
+        matrices = as_poses(pose, "pose", rigid=True)
+        lists = {name: as_points(value, name) for name, value in vectors.items()}
+        super().__init__(**{name: value.shape[:-1] for name, value in lists.items()}, pose=matrices.shape[:-2])
+        self.poses = self.flat(matrices, matrices.shape[:-2])
+        self.vectors = {name: self.flat(value, value.shape[:-1]) for name, value in lists.items()}
 
 
 def collide(
@@ -100,8 +121,9 @@ def collide(
     many poses one after the other, keep a Scene.
 
     a, b: a shape, or a list; anything that `Shape` takes alone is made one.
-    pose_a, pose_b: (4, 4) or (n, 4, 4), rigid, from the body's frame to the world, metres; None is the identity. Of a,
-        b, pose_a and pose_b what is there once counts for all pairs.
+    pose_a, pose_b: (4, 4) or (..., 4, 4), rigid, from the body's frame to the world, metres; None is the identity. a,
+        b, pose_a and pose_b fit together as NumPy broadcasts; `contacts.pair` counts through the batch, last dimension
+        first (`np.unravel_index`).
     direction, features, max_contacts_per_pair, devices: as of Scene.
     threads: 0 is one for each core; no bit depends on it.
     Raises InputError for poses that are not finite and rigid to 1e-4, where numbers of shapes and poses differ, and as
@@ -134,8 +156,8 @@ def intersects(
     Arguments and errors are those of `collide`. Gives a bool, or (n,) bool for lists.
     """
     pairs = _Pairs(a, b, pose_a, pose_b, threads)
-    found = _core.intersects(pairs.core).view(np.bool_)
-    return bool(found[0]) if pairs.is_one else found
+    (found,) = pairs.answers((_core.intersects(pairs.core).view(np.bool_),))
+    return found
 
 
 def common_point(
@@ -151,8 +173,8 @@ def common_point(
     Arguments and errors are those of `collide`. Gives (3,) or (n, 3) float64, metres, world frame.
     """
     pairs = _Pairs(a, b, pose_a, pose_b, threads)
-    found = _core.common_points(pairs.core)
-    return found[0] if pairs.is_one else found
+    (found,) = pairs.answers((_core.common_points(pairs.core),))
+    return found
 
 
 def distance(
@@ -173,7 +195,7 @@ def distance(
     work. One that is negative or NaN raises InputError.
     """
     pairs = _Pairs(a, b, pose_a, pose_b, threads)
-    return Distance(*one_of(_core.distances(pairs.core, as_length(max, "max")), pairs.is_one))
+    return Distance(*pairs.answers(_core.distances(pairs.core, as_length(max, "max"))))
 
 
 def closest_point(
@@ -189,12 +211,15 @@ def closest_point(
     Raises InputError for a point that is not finite, a pose that is not finite and rigid to 1e-4, a `max` that is
     negative or NaN, and where numbers of points and poses differ; each may be there once for all.
     """
-    places, one_point = as_points(points, "points")
-    matrices, one_pose = as_poses(pose, "pose", rigid=True)
+    placed = _Placed(pose, points=points)
     found = _core.closest_points(
-        as_shape(shape)._core, matrices, places, as_length(max, "max"), as_count(threads, "threads")
+        as_shape(shape)._core,
+        placed.poses,
+        placed.vectors["points"],
+        as_length(max, "max"),
+        as_count(threads, "threads"),
     )
-    return ClosestPoint(*one_of(found, one_point and one_pose))
+    return ClosestPoint(*placed.answers(found))
 
 
 def raycast(
@@ -214,9 +239,12 @@ def raycast(
     pose, threads: as of `closest_point`.
     Raises InputError for a direction that is zero or not finite, and as `closest_point` does.
     """
-    starts, along, matrices, one = _rays(origins, directions, pose)
-    shape_core, most = as_shape(shape)._core, as_length(max, "max")
-    return RayHit(*one_of(_core.ray_hits(shape_core, matrices, starts, along, most, as_count(threads, "threads")), one))
+    rays = _Placed(pose, origins=origins, directions=directions)
+    starts, along = rays.vectors["origins"], rays.vectors["directions"]
+    found = _core.ray_hits(
+        as_shape(shape)._core, rays.poses, starts, along, as_length(max, "max"), as_count(threads, "threads")
+    )
+    return RayHit(*rays.answers(found))
 
 
 def raycast_any(
@@ -232,10 +260,13 @@ def raycast_any(
 
     Arguments and errors are those of `raycast`. Gives a bool, or (n,) bool for lists.
     """
-    starts, along, matrices, one = _rays(origins, directions, pose)
-    shape_core, most = as_shape(shape)._core, as_length(max, "max")
-    found = _core.rays_meet(shape_core, matrices, starts, along, most, as_count(threads, "threads")).view(np.bool_)
-    return bool(found[0]) if one else found
+    rays = _Placed(pose, origins=origins, directions=directions)
+    starts, along = rays.vectors["origins"], rays.vectors["directions"]
+    met = _core.rays_meet(
+        as_shape(shape)._core, rays.poses, starts, along, as_length(max, "max"), as_count(threads, "threads")
+    )
+    (found,) = rays.answers((met.view(np.bool_),))
+    return found
 
 
 def contains(
@@ -245,20 +276,11 @@ def contains(
 
     Exact. Arguments and errors are those of `closest_point`. Gives a bool, or (n,) bool for lists.
     """
-    places, one_point = as_points(points, "points")
-    matrices, one_pose = as_poses(pose, "pose", rigid=True)
-    found = _core.contains(as_shape(shape)._core, matrices, places, as_count(threads, "threads")).view(np.bool_)
-    return bool(found[0]) if one_point and one_pose else found
-
-
-def _rays(
-    origins: ArrayLike, directions: ArrayLike, pose: Optional[ArrayLike]
-) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], bool]:
-    """Starts, directions, poses, and whether a single one of each was given."""
-    starts, one_origin = as_points(origins, "origins")
-    along, one_direction = as_points(directions, "directions")
-    matrices, one_pose = as_poses(pose, "pose", rigid=True)
-    return starts, along, matrices, one_origin and one_direction and one_pose
+    placed = _Placed(pose, points=points)
+    places = placed.vectors["points"]
+    inside = _core.contains(as_shape(shape)._core, placed.poses, places, as_count(threads, "threads"))
+    (found,) = placed.answers((inside.view(np.bool_),))
+    return found
 
 
 __all__ = [

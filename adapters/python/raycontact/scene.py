@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._arrays import as_count, as_id, as_ids, as_length, as_pairs, as_points, as_poses, one_of
+from ._arrays import Batch, as_count, as_id, as_ids, as_length, as_pairs, as_points, as_pose, as_poses
 from ._core import InputError, StepStats
 from .contacts import Contacts
 from .shape import Shape, ShapeLike, Shapes, as_shape, as_shapes
@@ -160,14 +160,11 @@ class Scene:
         Returns an id for one shape and one pose, else (n,) int64. No id is ever given twice.
         Raises InputError for poses that are not finite and rigid to 1e-4, and for numbers that do not fit.
         """
-        cores, one_shape = as_shapes(shapes, "shapes")
-        matrices, one_pose = as_poses(poses, "poses")
-        if not one_shape and len(matrices) == 1:
-            matrices = np.ascontiguousarray(np.broadcast_to(matrices, (len(cores), 4, 4)))
-        if not len(matrices) and (one_shape or not cores):
-            return np.empty(0, np.int64)
-        ids = self._core.add(cores, matrices)
-        return int(ids[0]) if one_shape and one_pose else ids
+        cores, lead = as_shapes(shapes, "shapes")
+        matrices = as_poses(poses, "poses")
+        count = len(cores) if lead or matrices.ndim == 2 else len(matrices)
+        ids = self._core.add(cores, _for_each(matrices, count))
+        return int(ids[0]) if lead == () and matrices.ndim == 2 else ids
 
     def remove(self, ids: ArrayLike) -> None:
         """Removes bodies. ids: one or (n,). Raises InputError at the first that is not in the scene; those before it
@@ -177,12 +174,13 @@ class Scene:
     def set_poses(self, ids: ArrayLike, poses: ArrayLike) -> None:
         """Moves bodies: all or none.
 
-        ids: one or (n,). poses: (4, 4) or (n, 4, 4), from the body's frame to the world, metres, taken as they are
-            (`nearest_rigid` mends those that drifted).
+        ids: one or (n,). poses: (n, 4, 4), or (4, 4) for all, from the body's frame to the world, metres, taken as they
+            are (`nearest_rigid` mends those that drifted).
         Raises InputError naming the place in the list: an id that is not in the scene, a pose that is not finite and
         rigid to 1e-4; and where numbers of ids and poses differ.
         """
-        self._core.set_poses(as_ids(ids, "ids")[0], as_poses(poses, "poses")[0])
+        numbers, _ = as_ids(ids, "ids")
+        self._core.set_poses(numbers, _for_each(as_poses(poses, "poses"), len(numbers)))
 
     def poses(self, ids: Optional[ArrayLike] = None) -> NDArray[np.float64]:
         """(n, 4, 4) float64, or (4, 4) for one id, from the body's frame to the world, metres; None: of all bodies, as
@@ -195,7 +193,8 @@ class Scene:
         """Where bodies are expected after the next step, for its speculative contacts; without it they are expected to
         go on as they did. Does nothing unless the scene is speculative. Arguments and errors are those of `set_poses`,
         but bodies before the one to blame have theirs."""
-        self._core.set_next_poses(as_ids(ids, "ids")[0], as_poses(poses, "poses")[0])
+        numbers, _ = as_ids(ids, "ids")
+        self._core.set_next_poses(numbers, _for_each(as_poses(poses, "poses"), len(numbers)))
 
     def set_speculative_margin(self, id: _Id, margin: Optional[float]) -> None:
         """Metres, for contacts of this body with any other; None: as the scene's settings say. Raises InputError for an
@@ -286,14 +285,11 @@ class Scene:
         Raises InputError for a direction that is zero or not finite, an origin that is not finite, a `max` that is
         negative or NaN, and where numbers of origins and directions differ.
         """
-        starts, one = as_points(origins, "origins")
-        along, one_direction = as_points(directions, "directions")
-        n = len(along) if len(starts) == 1 else len(starts)
-        starts, along = (
-            np.ascontiguousarray(np.broadcast_to(x, (n, 3))) if len(x) == 1 else x for x in (starts, along)
-        )
-        hits = self._core.raycast(starts, along, as_length(max, "max"))
-        return BodyRayHits(*one_of((*hits[0], hits[1]), one and one_direction))
+        starts, along = as_points(origins, "origins"), as_points(directions, "directions")
+        batch = Batch(origins=starts.shape[:-1], directions=along.shape[:-1])
+        starts, along = (np.broadcast_to(x, (*batch.shape, 3)).reshape(-1, 3) for x in (starts, along))
+        hits = self._core.raycast(np.ascontiguousarray(starts), np.ascontiguousarray(along), as_length(max, "max"))
+        return BodyRayHits(*batch.answers((*hits[0], hits[1])))
 
     def closest_point(self, points: ArrayLike, max: float = np.inf) -> BodyClosestPoints:
         """The point of all surfaces that is nearest to each point, within `max` metres.
@@ -301,9 +297,10 @@ class Scene:
         points: (3,) or (n, 3), metres, world frame. Poses set since the last step count. Raises InputError for a point
         that is not finite, and a `max` that is negative or NaN.
         """
-        places, one = as_points(points, "points")
-        found = self._core.closest_points(places, as_length(max, "max"))
-        return BodyClosestPoints(*one_of((*found[0], found[1]), one))
+        places = as_points(points, "points")
+        batch = Batch(points=places.shape[:-1])
+        found = self._core.closest_points(places.reshape(-1, 3), as_length(max, "max"))
+        return BodyClosestPoints(*batch.answers((*found[0], found[1])))
 
     def overlaps(self, shape: ShapeLike, pose: Optional[ArrayLike] = None) -> NDArray[np.int64]:
         """(n,) int64: the bodies whose meshes intersect another one, placed here; by slot. Exact.
@@ -311,14 +308,18 @@ class Scene:
         pose: (4, 4), from the shape's frame to the world, metres; None is the identity. Raises InputError for one that
         is not finite and rigid to 1e-4.
         """
-        matrices, one = as_poses(pose, "pose")
-        if not one:
-            raise InputError("pose: give one, (4, 4)")
-        return self._core.overlaps(as_shape(shape)._core, matrices)
+        return self._core.overlaps(as_shape(shape)._core, as_pose(pose, "pose")[None])
 
     def __repr__(self) -> str:
         settings = self._core.settings
         return f"<Scene: {len(self)} bodies, method {settings['method']}, devices {settings['devices']}>"
+
+
+def _for_each(poses: NDArray[np.float64], count: int) -> NDArray[np.float64]:
+    """(count, 4, 4), contiguous."""
+    if poses.ndim > 3 or (poses.ndim == 3 and len(poses) not in (1, count)):
+        raise InputError(f"poses: have shape {poses.shape} for {count} bodies; give one for each, or one for all")
+    return np.ascontiguousarray(np.broadcast_to(poses, (count, 4, 4)))
 
 
 __all__ = ["BodyClosestPoints", "BodyRayHits", "LostContacts", "Scene", "StepStats"]

@@ -180,13 +180,13 @@ def as_shape(value: ShapeLike) -> Shape:
     return value if isinstance(value, Shape) else Shape(value)
 
 
-def as_shapes(value: Any, what: str) -> tuple[list[_core.Shape], bool]:
-    """The C++ half's shapes, and whether a single one was given. What is there several times is made once."""
+def as_shapes(value: Any, what: str) -> tuple[list[_core.Shape], tuple[int, ...]]:
+    """The C++ half's shapes, and () for a single one or (n,). What is there several times is made once."""
     if isinstance(value, Shape):
-        return [value._core], True
+        return [value._core], ()
     is_list = isinstance(value, (list, tuple)) or (isinstance(value, np.ndarray) and value.dtype == object)
     if not is_list or hasattr(value, "faces"):
-        return [as_shape(value)._core], True
+        return [as_shape(value)._core], ()
     made: dict[int, _core.Shape] = {}
     cores = []
     for i, item in enumerate(value):
@@ -196,7 +196,7 @@ def as_shapes(value: Any, what: str) -> tuple[list[_core.Shape], bool]:
             except InputError as error:
                 raise InputError(f"{what}[{i}]: {error}") from None
         cores.append(made[id(item)])
-    return cores, False
+    return cores, (len(cores),)
 
 
 __all__ = ["Mass", "Shape", "ShapeLike", "Shapes"]

@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike
 from ._arrays import as_count, as_ids, as_length
 from ._core import InputError
 from .contacts import Contacts
+from .mesh import Mesh
 from .recording import Recording
 from .scene import Scene
 from .shape import Shape
@@ -34,7 +35,7 @@ _SEE_THROUGH = 0.5
 
 
 def show(
-    what: Union[Scene, str, os.PathLike[str]],
+    what: Union[Scene, Shape, Mesh, str, os.PathLike[str]],
     *,
     out: Union[str, os.PathLike[str], None] = None,
     contacts: bool = True,
@@ -44,9 +45,9 @@ def show(
     port: int = 8080,
     block: bool = True,
 ) -> Any:
-    """Shows a scene or plays a recording in a browser. Needs viser: `pip install viser`.
+    """Shows a scene or a shape, or plays a recording, in a browser. Needs viser: `pip install viser`.
 
-    what: a Scene, as it is now, or the .glb file of a Recorder or of `raycontact run --record`.
+    what: a Scene, as it is now; a Shape or Mesh alone; or the .glb file of a Recorder or of `raycontact run --record`.
     out: writes a page that needs no server to this file instead of serving; it can be mailed, or put on a web site.
     contacts: draws contacts as points and their normals as lines, and bodies see-through. Yellow ones are shallow, the
         deepest shown so far is red, speculative ones are blue. A scene's are those of its last step; a recording's are
@@ -62,12 +63,15 @@ def show(
     rate = as_length(fps, "fps")
     if not 0 < rate < np.inf:
         raise InputError(f"fps: {fps!r} is not finite and above 0")
+    if isinstance(what, (Shape, Mesh)):
+        shape, what = what, Scene()
+        what.add(shape)
     if isinstance(what, Scene):
         film = _film_of_scene(what, static)
     elif isinstance(what, (str, os.PathLike)):
         film = _film_of_recording(Recording(what), rate)
     else:
-        raise InputError(f"show: {type(what).__name__} is neither a Scene nor the file of a recording")
+        raise InputError(f"show: {type(what).__name__} is no Scene, Shape or Mesh, and no file of a recording")
 
     if out is not None:
         with _server("127.0.0.1", 0) as server:

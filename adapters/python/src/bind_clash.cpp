@@ -130,11 +130,12 @@ void bind_clash(nb::module_& m) {
         "load_parts",
         [](const std::vector<std::filesystem::path>& files) {
             std::vector<AssemblyPart> parts;
+            std::vector<std::string> left_out;
             {
                 const WithoutGil without_gil;
-                parts = load_parts(files);
+                parts = load_parts(files, &left_out);
             }
-            return tuples_of(parts);
+            return nb::make_tuple(tuples_of(parts), left_out);
         },
         "files"_a);
     m.def("find_clashes", &find_clashes_of, "names"_a, "meshes"_a, "poses"_a, "files"_a, "parents"_a, "against"_a,

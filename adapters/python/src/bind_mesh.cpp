@@ -75,6 +75,7 @@ void bind_mesh(nb::module_& m) {
     bind_report(m);
     nb::class_<Mesh>(m, "Mesh")
         .def_ro("name", &Mesh::name)
+        .def_ro("repairs", &Mesh::repairs)
         .def_prop_ro(
             "vertices",
             [](nb::handle_t<Mesh> self) {
@@ -101,24 +102,28 @@ void bind_mesh(nb::module_& m) {
         "data"_a, "format"_a, "name"_a);
     m.def(
         "make_mesh",
-        [](const Coordinates& vertices, const Corners& triangles, const std::string& name) {
-            return make_mesh(std::span(vertices.data(), vertices.size()), std::span(triangles.data(), triangles.size()),
-                             name);
+        [](const Coordinates& vertices, const Corners& triangles, const std::string& name,
+           const std::vector<std::string>& repairs) {
+            Mesh mesh = make_mesh(std::span(vertices.data(), vertices.size()),
+                                  std::span(triangles.data(), triangles.size()), name);
+            mesh.repairs = repairs;
+            return mesh;
         },
-        "vertices"_a, "triangles"_a, "name"_a);
+        "vertices"_a, "triangles"_a, "name"_a, "repairs"_a);
     m.def(
         "load_assembly",
         [](const std::filesystem::path& file) {
             std::vector<AssemblyPart> parts;
+            std::vector<std::string> left_out;
             {
                 const WithoutGil without_gil;
-                parts = load_assembly(file);
+                parts = load_assembly(file, &left_out);
             }
             nb::list list;
             for (const AssemblyPart& part : parts)
                 list.append(
                     nb::make_tuple(part.name, std::const_pointer_cast<Mesh>(part.mesh), matrices_of({&part.pose, 1})));
-            return list;
+            return nb::make_tuple(list, left_out);
         },
         "file"_a);
 }

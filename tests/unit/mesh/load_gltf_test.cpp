@@ -52,6 +52,13 @@ TEST(LoadGltf, BufferFileMayBeLongerThanItsBuffer) {
     EXPECT_EQ(mesh.triangles, made.triangles);
 }
 
+TEST(LoadGltf, JsonMayBeFilledWithNul) {
+    const TempFolder folder;
+    std::string json = gltf_json(quad(), R"([{"mesh":0}])", "");
+    json.resize((json.size() / 4 + 1) * 4, '\0');
+    EXPECT_EQ(load_mesh(folder.write("m.glb", glb(json, gltf_buffer(quad())))).vertices, quad().vertices);
+}
+
 TEST(LoadGltf, BufferInBase64) {
     const TempFolder folder;
     // (0 0 0), (1 0 0), (0 1 0); then 0 1 2 in 16 bits: 42 bytes.
@@ -400,6 +407,128 @@ TEST(LoadGltf, MorphTargetsAreNotAppliedWithoutEnd) {
     file.more += "]}]";
     file.nodes += "]";
     EXPECT_THROW(load_mesh(folder.write("m.glb", file.glb())), InputError);
+}
+
+/// Three instances of a triangle under a moved node.
+struct Instanced {
+    Instanced() {
+        accessors.add<float>({0, 0, 0, 1, 0, 0, 0, 1, 0}, 3);
+        accessors.add<float>({0, 0, 0, 10, 0, 0, 0, 20, 0}, 3);
+        accessors.add<float>({0, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 1}, 4);
+        accessors.add<float>({1, 1, 1, 1, 1, 1, 2, 2, 2}, 3);
+    }
+    std::string glb() const {
+        return accessors.glb(
+            R"([{"name":"tree","mesh":0,"translation":[0,0,5],"extensions":{"EXT_mesh_gpu_instancing":)"
+            R"({"attributes":)"
+                + attributes + R"(}},"children":[1]},{"mesh":0}])",
+            R"({"attributes":{"POSITION":0}})", "}]" + more);
+    }
+
+    Accessors accessors;
+    std::string attributes = R"({"TRANSLATION":1,"ROTATION":2,"SCALE":3,"_ID":0})", more;
+};
+
+TEST(LoadGltf, InstancesAreExpanded) {
+    const TempFolder folder;
+    Instanced file;
+    file.more = R"(,"extensionsUsed":["EXT_mesh_gpu_instancing"],"extensionsRequired":["EXT_mesh_gpu_instancing"])";
+    const auto path = folder.write("m.glb", file.glb());
+    // As it is; a half turn about z; twice as large. The child is there once.
+    const Mesh mesh = load_mesh(path);
+    expect_near(mesh.vertices, {{0, 0, 5},
+                                {1, 0, 5},
+                                {0, 1, 5},
+                                {10, 0, 5},
+                                {9, 0, 5},
+                                {10, -1, 5},
+                                {0, 20, 5},
+                                {2, 20, 5},
+                                {0, 22, 5},
+                                {0, 0, 5},
+                                {1, 0, 5},
+                                {0, 1, 5}});
+    EXPECT_EQ(mesh.repairs, std::vector<std::string>());
+    const std::vector<AssemblyPart> parts = load_assembly(path);
+    ASSERT_EQ(parts.size(), 4u);
+    EXPECT_EQ(parts[0].name, "tree[0]");
+    EXPECT_EQ(parts[2].name, "tree[2]");
+    EXPECT_EQ(parts[3].name, "nodes[1]");
+    EXPECT_EQ(parts[0].mesh, parts[1].mesh);
+    EXPECT_EQ(parts[0].mesh, parts[3].mesh);
+    EXPECT_EQ(parts[1].pose.translation, (Vec3{10, 0, 5}));
+    EXPECT_EQ(parts[2].mesh->vertices[1], (Vec3{2, 0, 0}));
+
+    const auto expect = [&](const std::string& attributes, const std::string& words) {
+        file.attributes = attributes;
+        try {
+            load_mesh(folder.write("m.glb", file.glb()));
+            ADD_FAILURE() << words;
+        } catch (const InputError& error) {
+            EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+        }
+    };
+    file.accessors.add<float>({0, 0, 0}, 3);
+    expect(R"({"TRANSLATION":1,"SCALE":4})", "accessors[4]: has not as many instances as the others");
+    expect(R"({"_ID":1})", "has no TRANSLATION, ROTATION or SCALE");
+    expect(R"({"TRANSLATION":2})", "accessors[2]: is not of type VEC3");
+    expect(R"({"ROTATION":9})", "accessors[9] does not exist");
+    expect("[]", "attributes: is no object");
+}
+
+TEST(LoadGltf, WhatIsLeftOutIsNamed) {
+    const TempFolder folder;
+    // Hidden with its child, seen, a lower level, a line beside triangles, and one of no scene.
+    const std::string nodes =
+        R"([{"name":"lid","mesh":0,"children":[1],"extensions":{"KHR_node_visibility":{"visible":false}}},)"
+        R"({"name":"bolt","mesh":0},{"name":"fine","mesh":0,"extensions":{"KHR_node_visibility":{"visible":true},)"
+        R"("MSFT_lod":{"ids":[3]}}},{"name":"coarse","mesh":0},{"name":"wire","mesh":1},{"name":"spare","mesh":0}])";
+    std::string json = gltf_json(quad(), nodes, "");
+    json = replaced(json, R"("nodes":[0])", R"("nodes":[0,2,3,4])");
+    json = replaced(json, R"(}],"accessors")",
+                    R"(},{"primitives":[{"attributes":{"POSITION":0},"mode":1}]}],"accessors")");
+    json =
+        replaced(json, R"({"asset")",
+                 R"({"extensionsUsed":["KHR_node_visibility","MSFT_lod","KHR_texture_transform","KHR_materials_unlit",)"
+                 R"("KHR_draco_mesh_compression","KHR_mesh_quantization","AGI_articulations"],"asset")");
+    const auto path = folder.write("m.glb", glb(json, gltf_buffer(quad())));
+    const std::vector<std::string> expected{
+        "left out 'lid', 'bolt': hidden (KHR_node_visibility)", "left out 'coarse': lower levels of detail (MSFT_lod)",
+        "left out 'spare': not in the scene", "left out 'wire': points, lines or no positions",
+        "left out what the extension 'AGI_articulations' moves or adds; it is not read"};
+    const Mesh mesh = load_mesh(path);
+    EXPECT_EQ(mesh.vertices, quad().vertices);
+    EXPECT_EQ(mesh.repairs, expected);
+    std::vector<std::string> left_out;
+    const std::vector<AssemblyPart> parts = load_assembly(path, &left_out);
+    ASSERT_EQ(parts.size(), 1u);
+    EXPECT_EQ(parts[0].name, "fine");
+    EXPECT_EQ(left_out, expected);
+    // Where nothing is left the error says why.
+    for (const bool as_parts : {false, true}) {
+        const auto hidden = folder.write("m.glb", glb(replaced(json, "[0,2,3,4]", "[0]"), gltf_buffer(quad())));
+        try {
+            as_parts ? void(load_assembly(hidden)) : void(load_mesh(hidden));
+            ADD_FAILURE();
+        } catch (const InputError& error) {
+            EXPECT_NE(std::string(error.what()).find("no triangles (left out 'lid', 'bolt': hidden"), std::string::npos)
+                << error.what();
+        }
+    }
+    const std::string required = replaced(json, R"("asset")", R"("extensionsRequired":["AGI_articulations"],"asset")");
+    EXPECT_THROW(load_mesh(folder.write("m.glb", glb(required, gltf_buffer(quad())))), InputError);
+}
+
+TEST(LoadGltf, ACentreOfItsOwnMovesTheScene) {
+    const TempFolder folder;
+    const std::string nodes = R"([{"rotation":[0,0,1,0],"children":[1]},{"mesh":0}])";
+    const std::string json = replaced(gltf_json(quad(), nodes, ""), R"({"asset")",
+                                      R"({"extensionsUsed":["CESIUM_RTC"],"extensionsRequired":["CESIUM_RTC"],)"
+                                      R"("extensions":{"CESIUM_RTC":{"center":[6378137.25,-1e6,7]}},"asset")");
+    const auto path = folder.write("m.glb", glb(json, gltf_buffer(quad())));
+    EXPECT_EQ(load_mesh(path).vertices[1], (Vec3{6378136.25, -1e6, 7}));
+    EXPECT_EQ(load_assembly(path)[0].pose.translation, (Vec3{6378137.25, -1e6, 7}));
+    EXPECT_THROW(load_mesh(folder.write("m.glb", glb(replaced(json, ",7]", "]"), gltf_buffer(quad())))), InputError);
 }
 
 } // namespace

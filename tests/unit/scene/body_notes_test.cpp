@@ -49,6 +49,35 @@ TEST_F(BodyNotes, UserDataBelongsToTheBody) {
     EXPECT_EQ(scene.user_data(next), 0u);
 }
 
+// The pairs of a step in which nothing moved are those of the last one, but for what was said meanwhile.
+TEST_F(BodyNotes, PairsOfBodiesAtRestFollowWhatIsSaid) {
+    const auto pairs = [&] {
+        scene.find_contacts();
+        return std::vector(scene.pairs().begin(), scene.pairs().end());
+    };
+    const std::vector<Pair> all{{a, b}, {b, c}};
+    EXPECT_EQ(pairs(), all);
+    EXPECT_EQ(pairs(), all);
+    scene.find_contacts(std::vector<Pair>{{a, c}});
+    EXPECT_EQ(pairs(), all) << "another list in between";
+    scene.set_filter(c, 0, 0);
+    EXPECT_EQ(pairs(), (std::vector<Pair>{{a, b}}));
+    scene.set_filter(c, 1, 1);
+    scene.set_pose(b, at(30));
+    scene.find_contacts(std::vector<Pair>{{a, b}, {b, c}});
+    scene.set_pose(b, at(0.9));
+    EXPECT_EQ(pairs(), all) << "moved and back, beside the broad phase";
+    scene.remove(b);
+    EXPECT_TRUE(pairs().empty());
+    const BodyId again = scene.add(box, at(0.9));
+    ASSERT_EQ(again.slot, b.slot);
+    EXPECT_EQ(pairs(), (std::vector<Pair>{{a, again}, {again, c}})) << "another body in its slot";
+    scene.remove(again);
+    const BodyId last = scene.add(box, at(0.9));
+    EXPECT_EQ(pairs(), last.slot < c.slot ? (std::vector<Pair>{{a, last}, {last, c}})
+                                          : (std::vector<Pair>{{a, last}, {c, last}}));
+}
+
 TEST_F(BodyNotes, FiltersNeedBothMasks) {
     scene.find_contacts();
     EXPECT_EQ(scene.pairs().size(), 2u);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "broadphase/sweep_and_prune.h"
+#include "broadphase/broad_phase.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ std::vector<SlotPair> all_pairs(const std::vector<WorldBox>& boxes) {
     return pairs;
 }
 
-TEST(SweepAndPrune, AgreesWithEveryPairTested) {
+TEST(BroadPhase, AgreesWithEveryPairTested) {
     std::mt19937 random(5);
     std::size_t found = 0;
     for (int round = 0; round < 60; ++round) {
@@ -35,17 +35,63 @@ TEST(SweepAndPrune, AgreesWithEveryPairTested) {
         }
         const std::vector<SlotPair> expected = all_pairs(boxes);
         std::vector<SlotPair> pairs, again;
-        sweep_and_prune(boxes, pairs);
+        Executor executor(1);
+        BroadPhase().find(executor, boxes, pairs);
         EXPECT_EQ(pairs, expected);
         std::shuffle(boxes.begin(), boxes.end(), random);
-        sweep_and_prune(boxes, again);
+        BroadPhase().find(executor, boxes, again);
         EXPECT_EQ(again, expected) << "the order of the bodies decides nothing";
         found += pairs.size();
     }
     EXPECT_GT(found, 5000u);
 }
 
-TEST(SweepAndPrune, WorldBoxHoldsTheTurnedBox) {
+// Trees of several levels; boxes that move far, come and go, beside one that holds nearly all.
+TEST(BroadPhase, AgreesWithEveryPairTestedWhileBoxesMove) {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> any(0, 1);
+    Executor one(1), four(4);
+    for (const double far : {0.0, 3e7, 1e12}) {
+        std::vector<WorldBox> boxes;
+        const auto move = [&](WorldBox& box, double side) {
+            const Vec3 low{far + side * any(random), side * any(random), side * any(random)};
+            box.low = low;
+            box.high = low + Vec3{any(random), any(random), any(random)};
+        };
+        for (BodySlot body = 0; body < 2500; ++body) move(boxes.emplace_back(WorldBox{{}, body}), 20);
+        boxes.push_back({{{far, 0, 0}, {far + 15, 15, 1}}, 2500});
+        BroadPhase kept, of_four;
+        std::vector<SlotPair> pairs, again;
+        for (int step = 0; step < 12; ++step) {
+            // A few, then all, into a corner, and back.
+            for (std::size_t i = 0; i + 1 < boxes.size(); i += step < 4 ? 50 : 1)
+                move(boxes[i], step % 3 == 1 ? 5 : 20);
+            if (step % 4 == 3) boxes.erase(boxes.begin() + 7 * step);
+            const std::vector<SlotPair> expected = all_pairs(boxes);
+            ASSERT_GT(expected.size(), 300u);
+            kept.find(one, boxes, pairs);
+            ASSERT_EQ(pairs, expected) << "step " << step;
+            of_four.find(four, boxes, again);
+            ASSERT_EQ(again, expected) << "step " << step;
+        }
+    }
+}
+
+TEST(BroadPhase, OneBoxOrNoneHasNoPair) {
+    Executor executor(1);
+    BroadPhase broad_phase;
+    std::vector<SlotPair> pairs{{1, 2}};
+    broad_phase.find(executor, {}, pairs);
+    EXPECT_TRUE(pairs.empty());
+    const std::vector<WorldBox> boxes(1, WorldBox{{{0, 0, 0}, {1, 1, 1}}, 3});
+    broad_phase.find(executor, boxes, pairs);
+    EXPECT_TRUE(pairs.empty());
+    const std::vector<WorldBox> alike{boxes[0], WorldBox{boxes[0], 1}, WorldBox{boxes[0], 9}};
+    broad_phase.find(executor, alike, pairs);
+    EXPECT_EQ(pairs, (std::vector<SlotPair>{{1, 3}, {1, 9}, {3, 9}}));
+}
+
+TEST(WorldBox, HoldsTheTurnedBox) {
     std::mt19937 random(6);
     std::uniform_real_distribution<double> any(-1, 1);
     for (int round = 0; round < 1000; ++round) {
