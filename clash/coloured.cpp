@@ -32,7 +32,7 @@ void append(std::string& bytes, const T& value) {
 /// detail far from the origin.
 class Writer {
 public:
-    void add(const Part& part, bool clashes) {
+    void add(const AssemblyPart& part, bool clashes) {
         const auto [known, is_new] = places_.try_emplace(part.mesh.get());
         Place& place = known->second;
         if (is_new) place = write(*part.mesh);
@@ -53,10 +53,12 @@ public:
     }
 
     void mark(const std::string& name, const Clash& clash) {
-        nodes_.push_back(
-            {{"name", name},
-             {"translation", {clash.point.x, clash.point.y, clash.point.z}},
-             {"extras", {{"depth", clash.depth ? Json(*clash.depth) : Json()}, {"contacts", clash.contacts}}}});
+        nodes_.push_back({{"name", name},
+                          {"translation", {clash.point.x, clash.point.y, clash.point.z}},
+                          {"extras",
+                           {{"kind", to_string(clash.kind)},
+                            {"depth", clash.depth ? Json(*clash.depth) : Json()},
+                            {"contacts", clash.contacts}}}});
     }
 
     std::string glb() {
@@ -144,7 +146,7 @@ private:
 
 } // namespace
 
-std::string coloured_glb(const std::vector<Part>& parts, const std::vector<Clash>& clashes) {
+std::string coloured_glb(const std::vector<AssemblyPart>& parts, const std::vector<Clash>& clashes) {
     std::vector<char> clashing(parts.size(), 0);
     for (const Clash& clash : clashes) clashing[clash.a] = clashing[clash.b] = 1;
     Writer writer;

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <clash/search.h>
+#include <raycontact/clash.h>
+
+#include <string>
+#include <vector>
 
 namespace raycontact::clash {
 
 /// A binary glTF file of all parts: those of the clashes red, the others grey and half transparent, and a node for each
 /// clash at its point, named "A x B". Throws InputError when the file would exceed 4 GiB.
-std::string coloured_glb(const std::vector<Part>& parts, const std::vector<Clash>& clashes);
+std::string coloured_glb(const std::vector<AssemblyPart>& parts, const std::vector<Clash>& clashes);
 
 } // namespace raycontact::clash

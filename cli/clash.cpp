@@ -7,19 +7,24 @@
 #include "cli/progress.h"
 #include "cli/stop.h"
 
+#include <clash/bcf.h>
 #include <clash/coloured.h>
-#include <clash/parts.h>
-#include <clash/search.h>
+#include <clash/csv.h>
 #include <output/out_file.h>
 
+#include <raycontact/clash.h>
 #include <raycontact/error.h>
 
 #include <CLI/CLI.hpp>
+#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
+#include <chrono>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -32,62 +37,97 @@ namespace {
 using namespace raycontact;
 using Json = nlohmann::ordered_json;
 
-struct ClashOptions {
-    std::vector<std::string> files;
-    std::optional<double> ignore_touching; ///< metres
+struct Unit {
+    const char* name;
+    double metres;
+};
+constexpr std::array units{Unit{"m", 1}, Unit{"mm", 1e-3}, Unit{"cm", 1e-2}, Unit{"in", 0.0254}};
+
+/// Lengths are in the unit of the files.
+struct Options {
+    std::vector<std::string> files, against, exclude;
+    double clearance = 0, tolerance = 0;
+    std::optional<double> ignore_touching;
+    std::string unit; ///< empty: not told
+    bool volume = false;
     std::uint32_t threads = 0;
-    std::string out;
+    std::string out, csv, bcf;
     bool json = false;
     bool check = false;
+
+    const Unit& length_unit() const {
+        for (const Unit& known : units)
+            if (unit == known.name) return known;
+        return units[0];
+    }
 };
 
 struct Result {
-    std::vector<clash::Part> parts;
-    std::size_t pairs = 0; ///< whose boxes touch
-    std::vector<clash::Clash> clashes;
+    std::vector<AssemblyPart> parts;
+    ClashReport report;
     std::size_t ignored = 0;
 
-    std::size_t faults() const {
-        return static_cast<std::size_t>(
-            std::count_if(parts.begin(), parts.end(), [](const clash::Part& part) { return !part.fault.empty(); }));
-    }
     std::vector<std::string> open() const {
         std::vector<std::string> names;
-        for (const clash::Part& part : parts)
-            if (part.shape && !part.shape->report().closed) names.push_back(part.name);
+        for (const std::size_t part : report.open) names.push_back(parts[part].name);
         return names;
     }
     std::size_t without_depth() const {
-        return static_cast<std::size_t>(
-            std::count_if(clashes.begin(), clashes.end(), [](const clash::Clash& c) { return !c.depth; }));
+        return static_cast<std::size_t>(std::ranges::count_if(report.clashes, [](const Clash& c) { return !c.depth; }));
     }
 };
 
+Json three(const Vec3& v) {
+    return {v.x, v.y, v.z};
+}
+
 /// One line a clash.
-std::string json_lines(const Result& result) {
+std::string json_lines(const Result& result, const Options& options) {
     std::string text;
-    for (const clash::Clash& c : result.clashes) {
+    for (const Clash& c : result.report.clashes) {
         Json line{{"a", result.parts[c.a].name},
                   {"b", result.parts[c.b].name},
                   {"depth", c.depth ? Json(*c.depth) : Json()},
-                  {"point", {c.point.x, c.point.y, c.point.z}},
+                  {"point", three(c.point)},
                   {"contacts", c.contacts},
-                  {"duplicate", c.duplicate}};
-        line["normal"] = c.contacts > 0 ? Json{c.normal.x, c.normal.y, c.normal.z} : Json();
+                  {"duplicate", c.kind == ClashKind::duplicate}};
+        line["normal"] = c.normal != Vec3{} ? three(c.normal) : Json();
+        line["kind"] = to_string(c.kind);
+        line["distance"] = c.distance;
+        line["point_a"] = three(c.point_a);
+        line["point_b"] = three(c.point_b);
+        line["open"] = Json::array();
+        if (c.open_a) line["open"].push_back("a");
+        if (c.open_b) line["open"].push_back("b");
+        line["box"] = c.box ? Json{three(c.box->low), three(c.box->high)} : Json();
+        if (options.volume) line["volume"] = c.volume ? Json(*c.volume) : Json();
+        if (!options.unit.empty()) line["unit"] = options.unit;
         text += line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
     }
     return text;
 }
 
-std::string table(const Result& result) {
+std::string note_of(const Clash& c) {
+    std::string note = c.kind == ClashKind::duplicate  ? "the same part in the same place"
+                       : c.kind == ClashKind::inside   ? "one inside the other"
+                       : c.kind == ClashKind::piercing ? "one through the other"
+                                                       : "";
+    if (c.open_a || c.open_b) {
+        note += note.empty() ? "" : ", ";
+        note += c.open_a && c.open_b ? "both are open" : c.open_a ? "the first is open" : "the second is open";
+    }
+    return note.empty() ? note : "  (" + note + ")";
+}
+
+std::string table(const Result& result, const char* unit) {
     std::string text;
-    for (const clash::Clash& c : result.clashes) {
-        const std::string depth = !c.depth       ? "no depth"
-                                  : *c.depth > 0 ? fmt::format("{} m", float(*c.depth))
-                                                 : "touching";
-        const clash::Part &a = result.parts[c.a], &b = result.parts[c.b];
-        text += fmt::format("{:>12}  {}  x  {}  at {}, {}, {}{}\n", depth, a.name, b.name, c.point.x, c.point.y,
-                            c.point.z, c.duplicate ? "  (the same part in the same place)" : "");
+    for (const Clash& c : result.report.clashes) {
+        const std::string depth = c.kind == ClashKind::near ? fmt::format("{} {} apart", c.distance, unit)
+                                  : !c.depth                ? "no depth"
+                                  : *c.depth > 0            ? fmt::format("{} {}", float(*c.depth), unit)
+                                                            : "touching";
+        text += fmt::format("{:>12}  {}  x  {}  at {}, {}, {}{}\n", depth, result.parts[c.a].name,
+                            result.parts[c.b].name, c.point.x, c.point.y, c.point.z, note_of(c));
     }
     return text;
 }
@@ -102,103 +142,179 @@ std::string some_of(const std::vector<std::string>& names) {
 }
 
 std::string summary(const Result& result) {
-    std::string text = fmt::format("{} clash{} among {} parts ({} pair{} of touching boxes)", result.clashes.size(),
-                                   result.clashes.size() == 1 ? "" : "es", result.parts.size(), result.pairs,
-                                   result.pairs == 1 ? "" : "s");
+    const std::size_t clashes = result.report.clashes.size(), pairs = result.report.pairs;
+    const std::size_t faults = result.report.faults.size();
+    std::string text = fmt::format("{} clash{} among {} parts ({} pair{} of touching boxes)", clashes,
+                                   clashes == 1 ? "" : "es", result.parts.size(), pairs, pairs == 1 ? "" : "s");
     if (result.ignored > 0) text += fmt::format(", {} ignored as touching", result.ignored);
     if (result.without_depth() > 0)
         text += fmt::format("; {} without a depth, as one of the parts is no sound solid (see raycontact mesh)",
                             result.without_depth());
     if (const auto open = result.open(); !open.empty())
         text += fmt::format("; open, so that nothing is inside: {}", some_of(open));
-    if (result.faults() > 0)
-        text += fmt::format("; {} part{} not checked", result.faults(), result.faults() == 1 ? " was" : "s were");
+    if (faults > 0) text += fmt::format("; {} part{} not checked", faults, faults == 1 ? " was" : "s were");
     if (stop_signal() != 0) text += fmt::format("; cut short by {}", stop_name());
     return text + "\n";
 }
 
-Result search(const ClashOptions& options) {
+/// Two names of a line, each as CSV has it: in quotes where it has a comma.
+std::array<std::string, 2> two_names(const std::string& line, const std::string& where) {
+    std::vector<std::string> names(1);
+    bool in_quotes = false;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        const char c = line[i];
+        if (c == '"' && in_quotes && i + 1 < line.size() && line[i + 1] == '"')
+            names.back() += line[i++];
+        else if (c == '"')
+            in_quotes = !in_quotes;
+        else if (c == ',' && !in_quotes)
+            names.emplace_back();
+        else
+            names.back() += c;
+    }
+    if (in_quotes || names.size() != 2 || names[0].empty() || names[1].empty())
+        throw InputError(where + ": is not two names with a comma between; put names with a comma in quotes");
+    return {names[0], names[1]};
+}
+
+void read_excluded(const std::string& file, ClashOptions& how) {
+    std::ifstream lines(file);
+    if (!lines)
+        throw InputError("--exclude " + file + ": cannot be read; give a file of pairs of names, or parent-child");
+    std::string line;
+    for (std::size_t number = 1; std::getline(lines, line); ++number) {
+        if (line.ends_with('\r')) line.pop_back();
+        if (line.empty() || line.starts_with('#')) continue;
+        how.exclude.push_back(two_names(line, fmt::format("{}:{}", file, number)));
+    }
+    if (lines.bad() || !lines.eof()) throw InputError("--exclude " + file + ": cannot be read");
+}
+
+Result search(const Options& options) {
+    ClashOptions how;
+    how.against = options.against;
+    for (const std::string& excluded : options.exclude) {
+        if (excluded == "parent-child")
+            how.exclude_parent_child = true;
+        else
+            read_excluded(excluded, how);
+    }
+    how.clearance = options.clearance;
+    how.tolerance = options.tolerance;
+    how.volumes = options.volume;
+    how.threads = options.threads;
     Result result;
     std::vector<std::string> left_out;
-    result.parts = clash::load_parts({options.files.begin(), options.files.end()}, left_out);
+    result.parts = load_parts({options.files.begin(), options.files.end()}, &left_out);
     for (const std::string& line : left_out) std::cerr << line << '\n';
     if (result.parts.size() < 2)
         throw InputError(
             options.files[0]
             + ": is one part; give several files, or one that has parts: nodes, objects, groups or solids");
-    const auto pairs = clash::touching_boxes(result.parts);
-    result.pairs = pairs.size();
     listen_for_stop();
-    const auto stop = [] { return stop_signal() != 0; };
-    // Two tasks on one bar: shapes take most of the time.
+    how.stop = [] { return stop_signal() != 0; };
     Progress progress("clash", 1000, "");
-    const auto show = [&](double from, double to) {
-        return [&progress, from, to](std::size_t done, std::size_t total) {
-            progress.show(static_cast<std::uint32_t>(from + (to - from) * double(done) / double(total)));
-        };
-    };
-    clash::make_shapes(result.parts, pairs, options.threads, show(0, 700), stop);
-    for (const clash::Part& part : result.parts)
-        if (!part.fault.empty()) std::cerr << fmt::format("not checked: {}: {}\n", part.name, part.fault);
-    clash::SearchOptions how;
-    how.threads = options.threads;
-    how.progress = show(700, 1000);
-    how.stop = stop;
-    result.clashes = clash::find_clashes(result.parts, pairs, how);
+    how.progress = [&progress](double done) { progress.show(static_cast<std::uint32_t>(1000 * done)); };
+    result.report = find_clashes(result.parts, how);
     progress.done();
+    for (const auto& [part, fault] : result.report.faults)
+        std::cerr << fmt::format("not checked: {}: {}\n", result.parts[part].name, fault);
     if (options.ignore_touching)
-        result.ignored = std::erase_if(result.clashes, [&](const clash::Clash& c) {
+        result.ignored = std::erase_if(result.report.clashes, [&](const Clash& c) {
             // Depths are float32: a tenth is a little more.
-            return c.depth && *c.depth <= *options.ignore_touching * (1 + 1e-6);
+            return c.kind != ClashKind::near && c.depth && *c.depth <= *options.ignore_touching * (1 + 1e-6);
         });
     return result;
 }
 
-void check_out(const ClashOptions& options) {
-    if (!options.out.ends_with(".glb")) throw InputError("--out " + options.out + ": give a name that ends in .glb");
+/// A file to write, if it is named; no other one, and none that is read.
+std::optional<output::OutFile> claim(const Options& options, const char* option, const std::string& name,
+                                     const char* ending) {
+    if (name.empty()) return std::nullopt;
+    if (!name.ends_with(ending))
+        throw InputError(fmt::format("{} {}: give a name that ends in {}", option, name, ending));
     std::error_code none;
     for (const std::string& file : options.files)
-        if (std::filesystem::equivalent(file, options.out, none))
-            throw InputError("--out " + options.out + ": is one of the files to read; give another name");
+        if (std::filesystem::equivalent(file, name, none))
+            throw InputError(fmt::format("{} {}: is one of the files to read; give another name", option, name));
+    return output::OutFile(name);
 }
 
-void run_clash(const ClashOptions& options) {
-    std::optional<output::OutFile> out;
-    if (!options.out.empty()) {
-        check_out(options);
-        out.emplace(options.out);
-    }
+void write(std::optional<output::OutFile>& file, const std::string& bytes) {
+    file->write(bytes);
+    file->keep(stop_signal() != 0);
+}
+
+void run_clash(const Options& options) {
+    auto out = claim(options, "--out", options.out, ".glb");
+    auto csv = claim(options, "--csv", options.csv, ".csv");
+    auto bcf = claim(options, "--bcf", options.bcf, ".bcfzip");
     const Result result = search(options);
+    const Unit& unit = options.length_unit();
     if (options.json) {
-        std::cout << json_lines(result) << std::flush;
+        std::cout << json_lines(result, options) << std::flush;
         std::cerr << summary(result);
     } else {
-        std::cout << table(result) << summary(result) << std::flush;
+        std::cout << table(result, unit.name) << summary(result) << std::flush;
     }
-    if (out) {
-        out->write(clash::coloured_glb(result.parts, result.clashes));
-        out->keep(stop_signal() != 0);
+    const std::vector<Clash>& clashes = result.report.clashes;
+    if (out) write(out, clash::coloured_glb(result.parts, clashes));
+    if (csv) write(csv, clash::csv(result.parts, clashes));
+    if (bcf) {
+        const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+        write(bcf, clash::bcf_zip(result.parts, clashes,
+                                  {unit.metres, unit.name, fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now))}));
     }
     if (!options.check || stop_signal() != 0) return;
-    if (!result.clashes.empty()) throw EndWith{found};
-    if (result.faults() > 0) throw std::runtime_error("--check: not all parts could be checked");
+    if (!clashes.empty()) throw EndWith{found};
+    if (!result.report.faults.empty()) throw std::runtime_error("--check: not all parts could be checked");
 }
 
 } // namespace
 
 void add_clash(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("clash", "Find the parts of an assembly that intersect");
-    auto options = std::make_shared<ClashOptions>();
+    CLI::App* command = app.add_subcommand("clash", "Find the parts of an assembly that intersect, or are too near");
+    auto options = std::make_shared<Options>();
+    constexpr double most = 1e9;
     command
         ->add_option("FILES", options->files,
                      "mesh files; parts are nodes of glTF, objects or groups of OBJ, solids of a text STL")
         ->required();
-    add_number(*command, "--ignore-touching", options->ignore_touching,
-               "leave out clashes no deeper than this, metres; 0: those that only touch. Those without a depth stay",
-               0.0, 1e9);
+    // One word each, so that FILES may follow.
+    command
+        ->add_option("--against", options->against,
+                     "test parts or files of this name (* and ? stand for any) against "
+                     "all others, and no more; may be given again")
+        ->type_name("SET")
+        ->expected(1)
+        ->take_all();
+    command
+        ->add_option("--exclude", options->exclude,
+                     "leave out pairs: a file with two names or patterns a line, a comma "
+                     "between; or parent-child, of the nodes of glTF; may be given again")
+        ->type_name("PAIRS")
+        ->expected(1)
+        ->take_all();
+    const auto add_length = [&](const char* option, auto& length, const char* help) {
+        add_number(*command, option, length, help, 0.0, most)->type_name("LENGTH");
+    };
+    add_length("--clearance", options->clearance, "also find parts that are no farther apart than this");
+    add_length("--tolerance", options->tolerance, "depths and gaps up to this are touching");
+    add_length("--ignore-touching", options->ignore_touching,
+               "leave out clashes no deeper than this; 0: those that only touch. Those without a depth stay");
+    command->add_option("--unit", options->unit, "of the files, and so of all lengths: m, mm, cm or in")
+        ->type_name("UNIT")
+        ->check([](const std::string& word) {
+            if (std::ranges::any_of(units, [&](const Unit& unit) { return word == unit.name; })) return std::string();
+            return "\"" + word + "\" is no unit; give m, mm, cm or in";
+        });
+    command->add_flag("--volume", options->volume, "also find the volume that two parts share (slow)");
     add_number(*command, "--threads", options->threads, "0: one for each core", 0u, 1024u);
     add_out(*command, "--out", options->out, "write all parts there as .glb, those that clash in red")
         ->type_name("FILE.glb");
+    add_out(*command, "--csv", options->csv, "write the clashes there as a table")->type_name("FILE.csv");
+    add_out(*command, "--bcf", options->bcf, "write the clashes there as topics of BIM Collaboration Format 2.1")
+        ->type_name("FILE.bcfzip");
     command->add_flag("--json", options->json, "print one JSON line a clash on stdout");
     command->add_flag("--check", options->check, "exit status 3 where parts clash");
     command->footer(

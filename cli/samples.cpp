@@ -69,7 +69,7 @@ Mesh nut_in_place() {
 
 /// A bolt with two nuts, of which the second is 0.75 mm in the first.
 std::string assembly() {
-    std::vector<clash::Part> parts(3);
+    std::vector<AssemblyPart> parts(3);
     const auto nut = std::make_shared<const Mesh>(nut_in_place());
     parts[0].name = "bolt";
     parts[0].mesh = std::make_shared<const Mesh>(scenes::threaded_bolt(thread));

@@ -2,8 +2,8 @@
 #include <reproduce/experiments.h>
 #include <reproduce/series.h>
 
+#include <raycontact/clash.h>
 #include <raycontact/collide.h>
-#include <scenes/overlap/volume.h>
 
 #include <fmt/format.h>
 
@@ -78,7 +78,7 @@ Json measure(const Workshop& shop, const SimulationOptions& options, const Tick&
             const bool seen = found["ray"].contains(pair);
             if (!seen && !intersects(placed.shape(a), placed.pose(a), placed.shape(b), placed.pose(b))) continue;
             const double volume =
-                scenes::overlap_volume(placed.shape(a), placed.pose(a), placed.shape(b), placed.pose(b));
+                overlap_volume(placed.shape(a), placed.pose(a), placed.shape(b), placed.pose(b));
             volume_of_all += volume;
             ++pairs_met;
             unseen += !seen;

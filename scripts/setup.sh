@@ -7,7 +7,7 @@ packages_build=(
     libtbb-dev nlohmann-json3-dev libxxhash-dev                        # the library
     ocl-icd-opencl-dev opencl-c-headers                                # its OpenCL devices; it builds without them
     libbullet-dev                                                      # the Bullet adapter
-    libcli11-dev libfmt-dev libmeshoptimizer-dev libembree-dev libstb-dev libwebp-dev zlib1g-dev # the program, its scenes and report
+    libcli11-dev libfmt-dev libmeshoptimizer-dev libembree-dev libstb-dev libwebp-dev libzip-dev zlib1g-dev # the program, its scenes and report
 )
 packages_core=( # scripts/test core: the library without OpenCL devices, and its own tests
     g++ cmake ninja-build libtbb-dev nlohmann-json3-dev libxxhash-dev libgtest-dev

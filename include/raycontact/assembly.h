@@ -5,6 +5,7 @@
 #include <raycontact/mesh.h>
 #include <raycontact/pose.h>
 
+#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -17,6 +18,10 @@ struct AssemblyPart {
     std::string name;                 ///< of its node, "nodes[3]" where it has none, group or solid; or of its file
     std::shared_ptr<const Mesh> mesh; ///< metres, in the part's own frame, scaled as the file scales it
     Pose pose;                        ///< of that frame in the assembly; of a mesh with a skin the identity
+    std::string file{};               ///< that it is from
+    /// Number of the part that its node is under, the nearest one; no_part where there is none.
+    std::size_t parent = no_part;
+    static constexpr std::size_t no_part = static_cast<std::size_t>(-1); ///< the number of none
 };
 
 /// Of a glTF file each node of its scene that places a mesh, in node order; an instance of a node is "NODE[3]". Of an

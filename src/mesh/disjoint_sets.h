@@ -16,6 +16,11 @@ public:
         parents_.resize(count);
         std::iota(parents_.begin(), parents_.end(), 0u);
     }
+    /// A set of one more number.
+    std::uint32_t add() {
+        parents_.push_back(static_cast<std::uint32_t>(parents_.size()));
+        return parents_.back();
+    }
     std::uint32_t of(std::uint32_t i) {
         while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
         return i;

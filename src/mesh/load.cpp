@@ -101,7 +101,10 @@ std::vector<AssemblyPart> load_assembly(const std::filesystem::path& path, std::
         parts.push_back({mesh->name, std::move(mesh), {}});
     }
     if (parts.empty()) check_mesh(others, file.shown);
-    for (const AssemblyPart& part : parts) check_mesh(*part.mesh, file.shown + ": " + part.name);
+    for (AssemblyPart& part : parts) {
+        check_mesh(*part.mesh, file.shown + ": " + part.name);
+        part.file = path.string();
+    }
     if (left_out != nullptr) *left_out = std::move(others.repairs);
     return parts;
 }

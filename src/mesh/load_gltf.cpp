@@ -39,6 +39,7 @@ public:
     std::vector<AssemblyPart> read_parts(std::vector<std::string>& told) {
         std::map<std::string, std::shared_ptr<const Mesh>> known;
         std::vector<AssemblyPart> parts;
+        std::vector<std::size_t> places; // of their nodes
         for_each_placed_mesh([&](const PlacedMesh& placed) {
             if (!is_finite(placed.placement.origin)) fail(placed.node, "is placed where no number is finite");
             const auto [pose, own] = split(placed.placement);
@@ -49,8 +50,18 @@ public:
                 mesh_.name = placed.name;
                 made = std::make_shared<const Mesh>(std::exchange(mesh_, {}));
             }
-            if (!made->triangles.empty()) parts.push_back({placed.name, made, pose});
+            if (made->triangles.empty()) return;
+            std::size_t& part = nodes_[placed.place].part;
+            if (part == AssemblyPart::no_part) part = parts.size(); // of instances the first
+            places.push_back(placed.place);
+            parts.push_back({placed.name, made, pose});
         });
+        for (const std::size_t n : from_roots_) {
+            if (nodes_[n].parent == AssemblyPart::no_part) continue;
+            const Node& parent = nodes_[nodes_[n].parent];
+            nodes_[n].above = parent.part != AssemblyPart::no_part ? parent.part : parent.above;
+        }
+        for (std::size_t i = 0; i < parts.size(); ++i) parts[i].parent = nodes_[places[i]].above;
         const std::vector<std::string> own = notes();
         told.insert(told.end(), own.begin(), own.end());
         return parts;
@@ -61,13 +72,17 @@ private:
         std::vector<std::size_t> children;
         bool waits = false; ///< for its parent to be placed
         bool in_scene = false;
-        const char* left_out = nullptr; ///< why it is, with all below it
-        Placement placement;            ///< in its parent, then in the scene
+        const char* left_out = nullptr;             ///< why it is, with all below it
+        Placement placement;                        ///< in its parent, then in the scene
+        std::size_t parent = AssemblyPart::no_part; ///< a node
+        std::size_t part = AssemblyPart::no_part;   ///< that it is
+        std::size_t above = AssemblyPart::no_part;  ///< the nearest part that it is under
     };
 
     /// A mesh as a node has it.
     struct PlacedMesh {
         Item node, mesh;
+        std::size_t place;               ///< of the node
         std::string name;                ///< of the node, and of which of its instances
         std::size_t number;              ///< of the mesh
         std::optional<std::size_t> skin; ///< which places each vertex by itself
@@ -100,7 +115,7 @@ private:
             for (std::size_t i = 0; i < instances.size(); ++i) {
                 primitives += list(mesh, "primitives").size();
                 if (primitives > most_primitives) file().fail("places too many primitives; split or reduce it");
-                PlacedMesh placed{node, mesh, name_of(node), number, {}, morph_weights(*this, node, mesh), {}};
+                PlacedMesh placed{node, mesh, n, name_of(node), number, {}, morph_weights(*this, node, mesh), {}};
                 if (is_instanced) placed.name.append("[").append(std::to_string(i)).append("]");
                 count_moves(placed.weights.size());
                 if (skin)
@@ -239,6 +254,7 @@ private:
                 if (nodes_[child].waits)
                     fail(node, "its child " + std::to_string(child) + " has two parents; nodes must form a tree");
                 nodes_[child].waits = true;
+                nodes_[child].parent = n;
             }
         }
         // The default scene, or the first; all nodes where the file has no scene.
@@ -268,6 +284,7 @@ private:
         for (std::size_t n = 0; n < nodes_.size(); ++n) {
             if (nodes_[n].waits) fail(item("nodes", n), "is its own ancestor; nodes must form a tree");
         }
+        from_roots_ = std::move(order);
     }
 
     Placement own_placement(const Item& node) const {
@@ -408,6 +425,7 @@ private:
     }
 
     std::vector<Node> nodes_;
+    std::vector<std::size_t> from_roots_;                      ///< nodes, each after its parent
     std::map<std::size_t, GltfSkin> skins_;                    ///< that were read
     std::map<std::string, std::vector<std::string>> left_out_; ///< why, and the names of the nodes
     std::set<std::size_t> with_others_;                        ///< meshes that hold more than triangles

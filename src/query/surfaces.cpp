@@ -322,16 +322,16 @@ private:
     double shift_ = 0;
 };
 
-} // namespace
-
-std::optional<TrianglePair> meeting_triangles(const ShapePair& pair) {
-    if (pair.far_apart()) return std::nullopt;
+// Visits the blocks whose boxes touch until done(): the nearest middles first, as deep in one another they are likely
+// to meet.
+template <class Done, class Visit>
+void descend_to_touching(const ShapePair& pair, Done&& done, Visit&& visit) {
+    if (pair.far_apart()) return;
     constexpr float never = std::numeric_limits<float>::infinity();
     const double rounding = float_rounding_of(pair);
-    Meeting meeting(pair);
     pair.each_tree([&](const TriangleTree& a, const TriangleTree& b) {
         nearest_pairs_first<float>(
-            a, b, [&] { return meeting.found() ? 0 : never; },
+            a, b, [&] { return done() ? 0 : never; },
             [&](Side side, const kernels::Node& node, const Box& other, Lanes<float>& lanes) {
                 const TwoFrames<float> frames(pair, side, other, rounding);
                 for (std::size_t lane = 0; lane < NODE_LANES; ++lane) {
@@ -342,15 +342,42 @@ std::optional<TrianglePair> meeting_triangles(const ShapePair& pair) {
                         const float away = child.middle[k] - frames.own_middle[k];
                         squared += away * away;
                     }
-                    // The nearest middles first: deep in one another, they are likely to meet.
                     lanes[lane] = off > 0 ? never : std::min(squared, 1e30f);
                 }
             },
-            [&](const kernels::TriangleBlock& of_a, const kernels::TriangleBlock& of_b) {
-                if (!meeting.found()) meeting.look(of_a, of_b);
-            });
+            visit);
     });
+}
+
+} // namespace
+
+std::optional<TrianglePair> meeting_triangles(const ShapePair& pair) {
+    Meeting meeting(pair);
+    descend_to_touching(
+        pair, [&] { return meeting.found().has_value(); },
+        [&](const kernels::TriangleBlock& of_a, const kernels::TriangleBlock& of_b) {
+            if (!meeting.found()) meeting.look(of_a, of_b);
+        });
     return meeting.found();
+}
+
+void each_touching_pair(const ShapePair& pair, const std::function<void(std::uint32_t a, std::uint32_t b)>& visit) {
+    const double grow_a = rounding_of(pair.a()) + float_rounding_of(pair),
+                 grow_b = rounding_of(pair.b().shape()) + float_rounding_of(pair);
+    descend_to_touching(
+        pair, [] { return false; },
+        [&](const kernels::TriangleBlock& of_a, const kernels::TriangleBlock& of_b) {
+            const BlockBoxes boxes_a(of_a, grow_a), boxes_b(of_b, grow_b);
+            const Lanes<float> squares_a = boxes_a.squared_distances(pair.box_in(Side::a, boxes_b.whole()));
+            for (std::size_t i = 0; i < TRIANGLE_LANES; ++i) {
+                const std::uint32_t a = of_a.triangle[i];
+                if (a == NONE || squares_a[i] > 0) continue;
+                const Lanes<float> squares_b =
+                    boxes_b.squared_distances(grown(box_of(pair.corners_of_a(a)), grow_a + pair.error()));
+                for (std::size_t k = 0; k < TRIANGLE_LANES; ++k)
+                    if (of_b.triangle[k] != NONE && !(squares_b[k] > 0)) visit(a, of_b.triangle[k]);
+            }
+        });
 }
 
 std::optional<TrianglePair> closest_triangles(const ShapePair& pair, double farthest) {

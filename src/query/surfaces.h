@@ -4,6 +4,7 @@
 #include "query/shape_pair.h"
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 
 namespace raycontact {
@@ -16,6 +17,10 @@ struct TrianglePair {
 
 /// The first triangles found that meet, exactly.
 std::optional<TrianglePair> meeting_triangles(const ShapePair& pair);
+
+/// Visits triangles of which one each has a box, widened by rounding, that touches the other's. In any order, each
+/// once.
+void each_touching_pair(const ShapePair& pair, const std::function<void(std::uint32_t a, std::uint32_t b)>& visit);
 
 /// The closest triangles of two shapes whose surfaces do not meet, if they are not farther apart than `farthest`,
 /// metres, give or take a rounding.

@@ -95,8 +95,8 @@ TEST_F(Clash, DeepestFirstByFileName) {
         << "boxes of a and c do not touch; no progress bar where nobody sees it";
     const auto found = json_lines(result.out);
     ASSERT_EQ(found.size(), 2u);
-    EXPECT_EQ(keys_of(found[0]),
-              (std::set<std::string>{"a", "b", "depth", "point", "contacts", "duplicate", "normal"}));
+    EXPECT_EQ(keys_of(found[0]), (std::set<std::string>{"a", "b", "depth", "point", "contacts", "duplicate", "normal",
+                                                        "kind", "distance", "point_a", "point_b", "open", "box"}));
     EXPECT_EQ(found[0]["a"], "b.obj");
     EXPECT_EQ(found[0]["b"], "c.obj");
     EXPECT_NEAR(found[0]["depth"].get<double>(), 0.3, 1e-5);
@@ -210,6 +210,8 @@ TEST_F(Clash, OpenPartsThatCrossHaveNoDepthAndAreNotIgnored) {
     ASSERT_EQ(found.size(), 1u);
     EXPECT_TRUE(found[0]["depth"].is_null());
     EXPECT_EQ(found[0]["contacts"], 0);
+    EXPECT_EQ(found[0]["kind"], "overlapping");
+    EXPECT_EQ(found[0]["open"], json({"a", "b"}));
     EXPECT_NE(result.err.find("1 without a depth"), std::string::npos) << result.err;
     EXPECT_NE(result.err.find("open, so that nothing is inside: lying.obj, upright.obj"), std::string::npos);
 }
@@ -305,6 +307,68 @@ TEST_F(Clash, ColouredAssembly) {
     EXPECT_EQ(again[0]["a"], "left");
 }
 
+TEST_F(Clash, AgainstExcludeAndClearance) {
+    write_assembly("all.gltf", {{"pipe, 1", 0}, {"pipe, 2", 0.9}, {"wall", 1.8}, {"post", 2.85}});
+    const auto pairs = [&](std::vector<std::string> options) {
+        options.insert(options.begin(), "all.gltf");
+        std::set<std::string> found;
+        for (const json& c : clashes(options))
+            found.insert(c["a"].get<std::string>() + "-" + c["b"].get<std::string>() + " "
+                         + c["kind"].get<std::string>());
+        return found;
+    };
+    using Found = std::set<std::string>;
+    const std::string first = "pipe, 1-pipe, 2 overlapping", second = "pipe, 2-wall overlapping";
+    EXPECT_EQ(pairs({}), (Found{first, second}));
+    EXPECT_EQ(pairs({"--clearance", "0.06"}), (Found{first, second, "wall-post near"}));
+    EXPECT_EQ(pairs({"--tolerance", "0.06"}), (Found{first, second, "wall-post touching"}));
+    EXPECT_EQ(pairs({"--tolerance", "0.11"}),
+              (Found{"pipe, 1-pipe, 2 touching", "pipe, 2-wall touching", "wall-post touching"}));
+    EXPECT_EQ(pairs({"--against", "wall"}), (Found{second}));
+    EXPECT_EQ(pairs({"--against", "pipe*"}), (Found{second}));
+    folder_.write("known.csv", "# agreed\n\"pipe, 2\",wal?\r\n\n");
+    EXPECT_EQ(pairs({"--exclude", "known.csv"}), (Found{first}));
+    folder_.write("everything.csv", "*,*\n");
+    EXPECT_EQ(pairs({"--exclude", "everything.csv"}), Found{});
+    EXPECT_EQ(run({"all.gltf", "--exclude", "everything.csv", "--check"}).status, 0);
+    EXPECT_EQ(run({"all.gltf", "--exclude", "everything.csv", "--clearance", "9", "--check"}).status, 0);
+    EXPECT_EQ(run({"all.gltf", "--against", "post", "--clearance", "0.06", "--check"}).status, 3);
+    EXPECT_EQ(pairs({"--clearance", "0.06", "--ignore-touching", "1"}), (Found{"wall-post near"}));
+    const ProgramResult text = run({"all.gltf", "--clearance", "60", "--unit", "mm"});
+    EXPECT_NE(text.out.find(" mm apart  wall  x  post  at 2.3"), std::string::npos) << text.out;
+    EXPECT_EQ(clashes({"all.gltf", "--unit", "in"})[0]["unit"], "in");
+}
+
+TEST_F(Clash, PartsUnderOtherParts) {
+    write_assembly("all.gltf", {{"pump", 0}, {"flange", 0.9}, {"bolt", 0.9}, {"group", 5}});
+    std::ifstream file(folder_.path() / "all.gltf");
+    json root = json::parse(file);
+    root["nodes"][3].erase("mesh");
+    root["nodes"][3]["translation"] = {0, 0, 0};
+    root["nodes"][0]["children"] = {1, 3}; // the bolt under the pump, too, by way of a node without a mesh
+    root["nodes"][3]["children"] = {2};
+    root["scenes"][0]["nodes"] = {0};
+    folder_.write("tree.gltf", root.dump());
+    EXPECT_EQ(clashes({"tree.gltf"}).size(), 3u);
+    const json found = only_clash({"tree.gltf", "--exclude", "parent-child"});
+    EXPECT_EQ(found["a"], "flange");
+    EXPECT_EQ(found["b"], "bolt");
+    EXPECT_EQ(found["kind"], "duplicate");
+}
+
+TEST_F(Clash, Table) {
+    write_cube("a.obj", 0);
+    write_cube("b, \"2\".obj", 0.75);
+    write_cube("touch.obj", -1);
+    ASSERT_EQ(run({"a.obj", "b, \"2\".obj", "touch.obj", "--csv", "out.csv", "--volume"}).status, 0);
+    std::ifstream file(folder_.path() / "out.csv", std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    EXPECT_TRUE(text.starts_with("a,b,kind,depth,distance,x,y,z,contacts,open,low_x,")) << text;
+    EXPECT_NE(text.find("\r\na.obj,\"b, \"\"2\"\".obj\",overlapping,0.249"), std::string::npos) << text;
+    EXPECT_NE(text.find(",0.25\r\na.obj,touch.obj,touching,0,0,-0.5,"), std::string::npos) << text;
+    EXPECT_TRUE(text.ends_with(",0,,,,,,,,\r\n")) << text;
+}
+
 TEST_F(Clash, SameForEveryNumberOfThreads) {
     std::vector<std::string> arguments;
     for (int i = 0; i < 40; ++i) {
@@ -329,6 +393,18 @@ TEST_F(Clash, BadInputIsRefused) {
     expect_refused(run({"a.obj"}), "is one part");
     write_cube("b.obj", 0);
     expect_refused(run({"a.obj", "b.obj", "--out", "b.obj"}), "ends in .glb");
+    expect_refused(run({"a.obj", "b.obj", "--csv", "b.txt"}), "ends in .csv");
+    expect_refused(run({"a.obj", "b.obj", "--bcf", "b.zip"}), "ends in .bcfzip");
+    expect_refused(run({"a.obj", "b.obj", "--clearance", "-1"}), "--clearance");
+    expect_refused(run({"a.obj", "b.obj", "--tolerance", "-1"}), "--tolerance");
+    expect_refused(run({"a.obj", "b.obj", "--unit", "ft"}), "--unit");
+    expect_refused(run({"a.obj", "b.obj", "--against", "c*"}), "\"c*\"");
+    expect_refused(run({"a.obj", "b.obj", "--against", "*"}), "all parts match");
+    expect_refused(run({"a.obj", "b.obj", "--exclude", "none.csv"}), "none.csv");
+    folder_.write("pairs.csv", "a.obj,b.obj\na.obj,c.obj\n");
+    expect_refused(run({"a.obj", "b.obj", "--exclude", "pairs.csv"}), "exclude, pair 2: no part and no file is called");
+    folder_.write("pairs.csv", "a.obj,b.obj\na.obj\n");
+    expect_refused(run({"a.obj", "b.obj", "--exclude", "pairs.csv"}), "pairs.csv:2");
     write_assembly("two.gltf", {{"p", 0}, {"q", 0}});
     ASSERT_EQ(run({"two.gltf", "--out", "two.glb"}).status, 0);
     EXPECT_EQ(run({"two.gltf", "--out", "a/new/folder/two.glb"}).status, 0);

@@ -3,9 +3,9 @@
 #include "exact/random_solids.h"
 #include "exact/volume_cgal.h"
 
+#include <raycontact/clash.h>
 #include <raycontact/collide.h>
 #include <scenes/models/procedural.h>
-#include <scenes/overlap/volume.h>
 #include <scenes/random.h>
 
 #include <gtest/gtest.h>
@@ -16,8 +16,6 @@
 
 namespace raycontact::exact {
 namespace {
-
-using scenes::overlap_volume;
 
 /// Outward, its middle at the origin.
 std::shared_ptr<const Shape> box(double x, double y, double z) {

@@ -34,6 +34,36 @@ def test_duplicates_and_parts_inside_others():
     assert all(one.depth > 0 for one in found)
 
 
+def test_kinds_boxes_and_volumes():
+    pipe = rc.Mesh(*meshes.box((3, 0.25, 0.25)), name="pipe")
+    utm = np.array([691234.5, 5334567.25, 512.125])
+    parts = [("wall", BOX, rc.pose(utm)), ("pipe", pipe, rc.pose(utm)), ("off", BOX, rc.pose(utm + [0, 1.125, 0]))]
+    found = rc.clash(parts, clearance=0.125, volumes=True)
+    assert [one.kind for one in found] == ["piercing", "near"] and found[0].volume == pytest.approx(1 / 16)
+    assert np.allclose(found[0].box - utm, [[-0.5, -0.125, -0.125], [0.5, 0.125, 0.125]], atol=1e-5)
+    near = found[1]
+    assert (near.a, near.b, near.distance, near.depth) == ("wall", "off", 0.125, -0.125)
+    assert near.point_a[1] == utm[1] + 0.5 and near.point_b[1] == utm[1] + 0.625 and near.box is None
+    assert "one through the other" in str(found) and "0.125 m apart" in str(found) and near.open == (False, False)
+    assert rc.clash(parts, clearance=0.125, ignore_touching=9)[0].kind == "near"
+    assert [one.kind for one in rc.clash(row(0, 0.999, 2.0), tolerance=0.0011)] == ["touching"] * 2
+
+
+def test_pairs_are_chosen():
+    parts = row(0, 0.75, 1.5, 2.25)
+
+    def pairs(**options):
+        return {(one.index_a, one.index_b) for one in rc.clash(parts, **options)}
+
+    assert pairs() == {(0, 1), (1, 2), (2, 3)}
+    assert pairs(against="part 0") == {(0, 1)} and pairs(against=["part [0]", "*2"][1:]) == {(1, 2), (2, 3)}
+    assert pairs(exclude=[("part ?", "part 2"), "parent-child"]) == {(0, 1)}
+    bad = [{"against": "no*"}, {"exclude": [("part 0", "no")]}, {"exclude": [("part 0",)]}, {"clearance": -1}]
+    for options in [*bad, {"tolerance": float("nan")}]:
+        with pytest.raises(rc.InputError):
+            pairs(**options)
+
+
 def test_clashes_are_the_pairs_that_intersect():
     rng = np.random.default_rng(3)
     parts = []

@@ -50,15 +50,19 @@ def _collide(options: argparse.Namespace) -> int:
 
 def _clash(options: argparse.Namespace) -> int:
     found = rc.clash(
-        options.files, scale=options.scale, ignore_touching=options.ignore_touching, progress=sys.stderr.isatty()
-    )
+        options.files, scale=options.scale, against=options.against, clearance=options.clearance,
+        tolerance=options.tolerance, ignore_touching=options.ignore_touching, progress=sys.stderr.isatty(),
+    )  # fmt: skip
     for fault in found.faults:
         print(f"not checked: {fault.name}: {fault.why}", file=sys.stderr)
     if options.json:
         for one in found:
             normal = None if one.normal is None else one.normal.tolist()
             line = {"a": one.a, "b": one.b, "depth": one.depth, "point": one.point.tolist(), "contacts": one.contacts}
-            print(json.dumps({**line, "duplicate": one.duplicate, "normal": normal}))
+            line |= {"duplicate": one.duplicate, "normal": normal, "kind": one.kind, "distance": one.distance}
+            line |= {"point_a": one.point_a.tolist(), "point_b": one.point_b.tolist()}
+            line["open"] = [name for name, is_open in zip("ab", one.open, strict=True) if is_open]
+            print(json.dumps({**line, "box": None if one.box is None else one.box.tolist()}))
     else:
         print(found)
     if options.check and not found and found.faults:
@@ -99,7 +103,11 @@ def main(arguments: list[str] | None = None) -> int:
     clash = command("clash", _clash, "Find the parts of an assembly that intersect")
     for sub in (mesh, collide, clash):
         sub.add_argument("--scale", type=float, default=1.0, help="multiplies coordinates; 0.001 for millimetres")
-    clash.add_argument("files", nargs="+", metavar="FILE", help="parts are nodes of glTF, objects or groups of OBJ, solids of a text STL")
+    words = "parts are nodes of glTF, objects or groups of OBJ, solids of a text STL"
+    clash.add_argument("files", nargs="+", metavar="FILE", help=words)
+    clash.add_argument("--against", action="append", metavar="SET", help="test these (* and ?) against all others")
+    clash.add_argument("--clearance", type=float, default=0.0, metavar="LENGTH", help="also find those so near")
+    clash.add_argument("--tolerance", type=float, default=0.0, metavar="LENGTH", help="up to this they are touching")
     clash.add_argument("--ignore-touching", type=float, metavar="LENGTH", help="leave out clashes no deeper, metres")
     command("devices", _devices, "List the devices that contacts can be found on", checks=False)
 

@@ -4,7 +4,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any, NamedTuple, Optional, Union
 
 import numpy as np
@@ -17,18 +17,28 @@ from .mesh import Mesh, scaled_parts, tell
 
 
 class Clash(NamedTuple):
-    """Two parts that share a point.
+    """Two parts that share a point, or are near.
 
     a: name of a part.
     b: name of a later part.
-    depth: of the deepest contact, metres; 0: they touch. None: they share a point, and no rule of contact gives a
-        depth, as one of them is open, intersects itself or winds the wrong way somewhere.
-    point: (3,) float64, metres, frame of the assembly: of that contact; else one that both share.
-    normal: (3,) float64, unit, from a to b: of that contact; None without one.
+    depth: of the deepest contact, metres; 0: they touch; minus the distance of parts that are near. None: they share a
+        point, and no rule of contact gives a depth, as one of them is open, intersects itself or winds the wrong way
+        somewhere.
+    point: (3,) float64, metres, frame of the assembly: of that contact; else one that both share; near: point_a.
+    normal: (3,) float64, unit, from a to b: of that contact, or the shortest way; None without one.
     contacts: how many contacts the two have.
     duplicate: they are copies in one place.
     index_a: of a in the list of parts.
     index_b: of b in the list of parts.
+    kind: "touching"; "overlapping": surfaces cross; "piercing": and one part falls apart where the other is taken out
+        of it; "inside": one lies in the other; "duplicate"; "near": apart by no more than the clearance.
+    distance: of parts that share no point, metres; else 0.
+    point_a: (3,) float64, metres: of the deepest contact, or of the shortest way, on the surface of a.
+    point_b: likewise on that of b.
+    open: whether a, and whether b, is open. Then a depth says how far it reaches into the other alone.
+    box: (2, 3) float64, metres: lowest and highest corner of what both share; where one has no inside, of where their
+        surfaces cross. None: they touch, or are near.
+    volume: that both share, m^3, if asked for; None where one has no inside.
     """
 
     a: str
@@ -40,6 +50,13 @@ class Clash(NamedTuple):
     duplicate: bool
     index_a: int
     index_b: int
+    kind: str
+    distance: float
+    point_a: NDArray[np.float64]
+    point_b: NDArray[np.float64]
+    open: tuple[bool, bool]
+    box: Optional[NDArray[np.float64]]
+    volume: Optional[float]
 
 
 class Fault(NamedTuple):
@@ -56,14 +73,14 @@ class Fault(NamedTuple):
 
 
 class Clashes(Sequence[Clash]):
-    """Clashes, the deepest first, then those without a depth, then those that touch."""
+    """Clashes, the deepest first, then those without a depth, that touch, that are near."""
 
     def __init__(self, clashes: list[Clash], parts: list[str], pairs: int, faults: list[Fault], open: list[str]):
         self._clashes = clashes
         self.parts = parts
         """Names of all parts."""
         self.pairs = pairs
-        """How many pairs of boxes touch; only these can clash."""
+        """How many pairs of boxes touch, or are near; only these can clash."""
         self.faults = faults
         """Parts that could not be checked."""
         self.open = open
@@ -79,22 +96,30 @@ class Clashes(Sequence[Clash]):
         return iter(self._clashes)
 
     def __repr__(self) -> str:
-        depths = [clash.depth for clash in self if clash.depth]
+        depths = [clash.depth for clash in self if clash.depth and clash.depth > 0]
         deepest = f", deepest {depths[0]:.6g} m" if depths else ""
         return f"<Clashes: {len(self)} among {len(self.parts)} parts{deepest}>"
 
     def __str__(self) -> str:
         lines = []
         for clash in self:
-            depth = "no depth" if clash.depth is None else f"{clash.depth:.4g} m" if clash.depth > 0 else "touching"
-            same = "  (the same part in the same place)" if clash.duplicate else ""
-            lines.append(f"{depth:>12}  {clash.a}  x  {clash.b}{same}")
+            depth = f"{clash.distance:.4g} m apart" if clash.kind == "near" else "touching"
+            if clash.kind not in ("near", "touching"):
+                depth = "no depth" if clash.depth is None else f"{clash.depth:.4g} m"
+            lines.append(f"{depth:>12}  {clash.a}  x  {clash.b}{_NOTES.get(clash.kind, '')}")
         lines.append(repr(self)[1:-1])
         if self.open:
             lines.append(f"open, so that nothing is inside: {_some(self.open)}")
         if self.faults:
             lines.append(f"not checked: {_some([fault.name for fault in self.faults])}")
         return "\n".join(lines)
+
+
+_NOTES = {
+    "duplicate": "  (the same part in the same place)",
+    "inside": "  (one inside the other)",
+    "piercing": "  (one through the other)",
+}
 
 
 def _some(names: list[str]) -> str:
@@ -105,40 +130,72 @@ def clash(
     assembly: Any,
     *,
     scale: float = 1.0,
+    against: Union[str, Sequence[str], None] = None,
+    exclude: Iterable[Union[str, tuple[str, str]]] = (),
+    clearance: float = 0.0,
+    tolerance: float = 0.0,
     ignore_touching: Optional[float] = None,
+    volumes: bool = False,
     threads: int = 0,
     progress: Union[bool, Callable[[float], Any]] = False,
 ) -> Clashes:
-    """Every pair of parts that shares a point (exact), with the depth of its deepest contact.
+    """Every pair of parts that shares a point (exact) or is near, with its kind and the depth of its deepest contact.
 
     assembly: a file or a list of files (of a glTF file each node with a mesh is a part); a list of parts: each an
         `AssemblyPart`, a tuple (name, mesh, pose) or a mesh where it lies; a dict of meshes by name; or a scene of
         trimesh. Parts stay where they are placed.
-    scale: what coordinates and places are multiplied by; 0.001 for files in millimetres.
+    scale: what coordinates and places are multiplied by; 0.001 makes metres of millimetres. Without it all lengths are
+        in the unit of the parts.
+    against: names of parts or files, "*" and "?" stand for any: they are tested against all others, and no more.
+    exclude: pairs of such names that are left out; and "parent-child", for nodes of a glTF file and those under them.
+    clearance: parts that are no farther apart are found, too: kind "near", metres.
+    tolerance: depths and gaps up to it are "touching", metres.
+    volumes: asks for the volume that two parts share (slow).
     ignore_touching: leaves out clashes no deeper than this, metres; 0: those that only touch. None leaves out none.
     progress: True draws a bar if tqdm is installed; or a function of what is done, from 0 to 1.
 
-    Raises InputError for files that cannot be read, for fewer than two parts and for poses that are not rigid.
+    Raises InputError for files that cannot be read, for fewer than two parts, for poses that are not rigid, for names
+    that match nothing and for lengths below 0.
     """
-    parts = scaled_parts(_parts_of(assembly), scale)
+    given, files, parents = _parts_of(assembly)
+    parts = scaled_parts(given, scale)
     if len(parts) < 2:
         raise InputError(f"clash: {len(parts)} part given; give several, or a file that has parts: nodes, objects, groups or solids")
     names = [part.name for part in parts]
     poses = np.ascontiguousarray(np.stack([part.pose for part in parts]))
     meshes = [part.mesh._core for part in parts]
     with _Bar(progress) as bar:
-        found, pairs, faults, opened = _core.find_clashes(names, meshes, poses, as_count(threads, "threads"), bar.tell)
-    clashes = [
-        Clash(names[a], names[b], depth, point, normal, contacts, duplicate, a, b)
-        for a, b, depth, point, normal, contacts, duplicate in found
-    ]
+        found, pairs, faults, opened = _core.find_clashes(
+            names, meshes, poses, files, parents, [against] if isinstance(against, str) else list(against or ()),
+            *_excluded(exclude), as_length(clearance, "clearance"), as_length(tolerance, "tolerance"), bool(volumes),
+            as_count(threads, "threads"), bar.tell,
+        )  # fmt: skip
+    clashes = [Clash(names[one[5]], names[one[6]], *one) for one in found]
     if ignore_touching is not None:
         most = as_length(ignore_touching, "ignore_touching") * (1 + 1e-6)  # depths are float32
-        clashes = [one for one in clashes if one.depth is None or one.depth > most]
+        clashes = [one for one in clashes if one.kind == "near" or one.depth is None or one.depth > most]
     return Clashes(clashes, names, pairs, [Fault(i, names[i], why) for i, why in faults], [names[i] for i in opened])
 
 
-def _parts_of(assembly: Any) -> list[tuple[str, _core.Mesh, NDArray[np.float64]]]:
+def _excluded(exclude: Iterable[Union[str, tuple[str, str]]]) -> tuple[list[tuple[str, str]], bool]:
+    if isinstance(exclude, str):
+        exclude = [exclude]
+    pairs, parent_child = [], False
+    for pair in exclude:
+        if pair == "parent-child":
+            parent_child = True
+        elif isinstance(pair, (tuple, list)) and len(pair) == 2 and all(isinstance(name, str) for name in pair):
+            pairs.append((pair[0], pair[1]))
+        else:
+            raise InputError(f"exclude: {pair!r} is no pair of names, and not 'parent-child'")
+    return pairs, parent_child
+
+
+_Parts = tuple[list[tuple[str, _core.Mesh, NDArray[np.float64]]], list[str], list[int]]
+
+
+def _parts_of(assembly: Any) -> _Parts:
+    """The parts; and their files and parents, of parts from files."""
     if isinstance(assembly, (str, os.PathLike)):
         assembly = [assembly]
     if hasattr(assembly, "graph") and hasattr(assembly, "geometry"):  # of trimesh
@@ -151,7 +208,7 @@ def _parts_of(assembly: Any) -> list[tuple[str, _core.Mesh, NDArray[np.float64]]
     if assembly and all(isinstance(item, (str, os.PathLike)) for item in assembly):
         parts, left_out = _core.load_parts([os.fspath(file) for file in assembly])
         tell(left_out)
-        return parts
+        return parts  # with files and parents
     made: dict[int, Mesh] = {}
     parts = []
     for i, item in enumerate(assembly):
@@ -161,7 +218,7 @@ def _parts_of(assembly: Any) -> list[tuple[str, _core.Mesh, NDArray[np.float64]]
             made[id(mesh)] = mesh if isinstance(mesh, Mesh) else Mesh(mesh)
         own = made[id(mesh)]
         parts.append((str(name if name is not None else own.name or i), own._core, matrices.copy()))
-    return parts
+    return parts, [], []
 
 
 class _Bar:

@@ -3,9 +3,9 @@
 #include "bind.h"
 #include "without_gil.h"
 
-#include <clash/parts.h>
-#include <clash/search.h>
+#include <raycontact/clash.h>
 
+#include <nanobind/stl/array.h>
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
@@ -20,9 +20,6 @@
 namespace raycontact::python {
 
 namespace {
-
-using clash::Clash;
-using clash::Part;
 
 /// Ends a search when Ctrl-C is pressed or the user's function throws.
 class Interruption {
@@ -61,62 +58,69 @@ private:
     std::exception_ptr failure_;
 };
 
-nb::list tuples_of(const std::vector<Part>& parts) {
-    nb::list list;
-    for (const Part& part : parts)
+/// Names, meshes and poses, then files and parents, -1 for none.
+nb::tuple tuples_of(const std::vector<AssemblyPart>& parts) {
+    nb::list list, files, parents;
+    for (const AssemblyPart& part : parts) {
         list.append(nb::make_tuple(part.name, std::const_pointer_cast<Mesh>(part.mesh), matrices_of({&part.pose, 1})));
-    return list;
+        files.append(part.file);
+        parents.append(part.parent == AssemblyPart::no_part ? std::ptrdiff_t{-1} : std::ptrdiff_t(part.parent));
+    }
+    return nb::make_tuple(list, files, parents);
 }
 
+/// In the order of the fields of Python's Clash, without the names.
 nb::tuple tuple_of(const Clash& found) {
     const auto three = [](const Vec3& v) { return array_of(std::vector<double>{v.x, v.y, v.z}, {3}); };
-    return nb::make_tuple(found.a, found.b, found.depth, three(found.point),
-                          found.contacts > 0 ? nb::cast(three(found.normal)) : nb::none(), found.contacts,
-                          found.duplicate);
+    const auto box = [](const AxisBox& b) {
+        return array_of(std::vector<double>{b.low.x, b.low.y, b.low.z, b.high.x, b.high.y, b.high.z}, {2, 3});
+    };
+    return nb::make_tuple(found.depth, three(found.point),
+                          found.normal != Vec3{} ? nb::cast(three(found.normal)) : nb::none(), found.contacts,
+                          found.kind == ClashKind::duplicate, found.a, found.b, to_string(found.kind), found.distance,
+                          three(found.point_a), three(found.point_b), nb::make_tuple(found.open_a, found.open_b),
+                          found.box ? nb::cast(box(*found.box)) : nb::none(), found.volume);
 }
 
-/// progress: None, or a function of what is done, from 0 to 1.
-nb::tuple find_clashes(const std::vector<std::string>& names, const std::vector<std::shared_ptr<Mesh>>& meshes,
-                       const Matrices& matrices, std::uint32_t threads, const nb::object& progress) {
-    if (names.size() != meshes.size() || names.size() != matrices.shape(0))
+/// progress: None, or a function of what is done, from 0 to 1. files and parents: of none, or as many as names.
+nb::tuple find_clashes_of(const std::vector<std::string>& names, const std::vector<std::shared_ptr<Mesh>>& meshes,
+                          const Matrices& matrices, const std::vector<std::string>& files,
+                          const std::vector<std::ptrdiff_t>& parents, const std::vector<std::string>& against,
+                          const std::vector<std::array<std::string, 2>>& exclude, bool exclude_parent_child,
+                          double clearance, double tolerance, bool volumes, std::uint32_t threads,
+                          const nb::object& progress) {
+    const auto fits = [&](std::size_t size) { return size == names.size(); };
+    if (!fits(meshes.size()) || !fits(matrices.shape(0)) || (!files.empty() && !fits(files.size()))
+        || (!parents.empty() && !fits(parents.size())))
         throw nb::value_error("clash: as many names, meshes and poses are needed");
-    std::vector<Part> parts;
+    std::vector<AssemblyPart> parts;
     for (std::size_t i = 0; i < names.size(); ++i) {
         if (!meshes[i]) throw nb::value_error("clash: a mesh is None");
-        Part part;
-        part.name = names[i];
-        part.mesh = meshes[i];
-        part.pose = pose_at(matrices, i);
-        check_pose(part.pose, part.name.c_str());
+        AssemblyPart part{names[i], meshes[i], pose_at(matrices, i)};
+        if (!files.empty()) part.file = files[i];
+        if (!parents.empty() && parents[i] >= 0) part.parent = std::size_t(parents[i]);
         parts.push_back(std::move(part));
     }
-    std::vector<clash::PartPair> pairs;
-    std::vector<Clash> clashes;
+    ClashReport report;
     {
         WithoutGil without_gil;
         Interruption interruption(without_gil);
-        const auto stop = [&] { return interruption.stop(); };
-        const auto tell = [&](double from, double to) {
-            return [&, from, to](std::size_t done, std::size_t total) {
-                if (progress.is_none()) return;
+        ClashOptions options{against, exclude, exclude_parent_child, clearance, tolerance, volumes, threads};
+        options.stop = [&] { return interruption.stop(); };
+        if (!progress.is_none())
+            options.progress = [&](double done) {
                 interruption.run([&] {
                     const nb::gil_scoped_acquire gil;
-                    progress(from + (to - from) * double(done) / double(total));
+                    progress(done);
                 });
             };
-        };
-        pairs = clash::touching_boxes(parts);
-        clash::make_shapes(parts, pairs, threads, tell(0, 0.7), stop); // most of the time
-        if (!interruption.stop()) clashes = clash::find_clashes(parts, pairs, {threads, tell(0.7, 1), stop});
+        report = find_clashes(parts, options);
         interruption.rethrow();
     }
-    nb::list found, faults, open;
-    for (const Clash& one : clashes) found.append(tuple_of(one));
-    for (std::size_t i = 0; i < parts.size(); ++i) {
-        if (!parts[i].fault.empty()) faults.append(nb::make_tuple(i, parts[i].fault));
-        if (parts[i].shape && !parts[i].shape->report().closed) open.append(i);
-    }
-    return nb::make_tuple(found, pairs.size(), faults, open);
+    nb::list found, faults;
+    for (const Clash& one : report.clashes) found.append(tuple_of(one));
+    for (const auto& [part, why] : report.faults) faults.append(nb::make_tuple(part, why));
+    return nb::make_tuple(found, report.pairs, faults, nb::cast(report.open));
 }
 
 } // namespace
@@ -125,16 +129,18 @@ void bind_clash(nb::module_& m) {
     m.def(
         "load_parts",
         [](const std::vector<std::filesystem::path>& files) {
-            std::vector<Part> parts;
+            std::vector<AssemblyPart> parts;
             std::vector<std::string> left_out;
             {
                 const WithoutGil without_gil;
-                parts = clash::load_parts(files, left_out);
+                parts = load_parts(files, &left_out);
             }
             return nb::make_tuple(tuples_of(parts), left_out);
         },
         "files"_a);
-    m.def("find_clashes", &find_clashes, "names"_a, "meshes"_a, "poses"_a, "threads"_a, "progress"_a.none());
+    m.def("find_clashes", &find_clashes_of, "names"_a, "meshes"_a, "poses"_a, "files"_a, "parents"_a, "against"_a,
+          "exclude"_a, "exclude_parent_child"_a, "clearance"_a, "tolerance"_a, "volumes"_a, "threads"_a,
+          "progress"_a.none());
 }
 
 } // namespace raycontact::python

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <clash/parts.h>
+#include "clash/parts.h"
 
 #include <raycontact/scene.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <clash/duplicates.h>
+#include "clash/duplicates.h"
 
-#include <clash/askew.h>
+#include "clash/askew.h"
 
 #include "mesh/vector.h"
 

@@ -2,16 +2,17 @@
 // A body is what lies below its faces that look up, less what lies below those that look down: so the volume of what
 // two bodies share is a sum over the pairs of their faces, of the volume below both. Below two faces lies a prism over
 // the polygon in which their shadows overlap; on it the lower height is linear, but for one straight fold.
-#include <scenes/overlap/volume.h>
+#include <raycontact/clash.h>
 
 #include "mesh/measure.h"
+#include "query/checks.h"
 
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <vector>
 
-namespace raycontact::scenes {
+namespace raycontact {
 
 namespace {
 
@@ -140,6 +141,8 @@ double volume_below_both(const Face& f, const Face& g) {
 } // namespace
 
 double overlap_volume(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) {
+    check_placed(pose_a, "pose of the first mesh");
+    check_placed(pose_b, "pose of the second mesh");
     const Placed in_a = place(a, pose_a, pose_a.translation), in_b = place(b, pose_b, pose_a.translation);
     const Box room{most(in_a.box.low, in_b.box.low), least(in_a.box.high, in_b.box.high)};
     const Vec3 size = room.high - room.low;
@@ -149,9 +152,11 @@ double overlap_volume(const Shape& a, const Pose& pose_a, const Shape& b, const 
     const std::vector<Face> first = faces_of(a, in_a, room, up);
     std::vector<Face> second = faces_of(b, in_b, room, up);
     std::sort(second.begin(), second.end(), [](const Face& f, const Face& g) { return f.low_x < g.low_x; });
-    double sum = 0;
+    double widest = 0, sum = 0;
+    for (const Face& g : second) widest = std::max(widest, g.high_x - g.low_x);
     for (const Face& f : first)
-        for (const Face& g : second) {
+        for (auto at = std::ranges::lower_bound(second, f.low_x - widest, {}, &Face::low_x); at != second.end(); ++at) {
+            const Face& g = *at;
             if (g.low_x >= f.high_x) break;
             if (g.high_x <= f.low_x || g.low_y >= f.high_y || g.high_y <= f.low_y) continue;
             sum += f.sign * g.sign * volume_below_both(f, g);
@@ -159,4 +164,4 @@ double overlap_volume(const Shape& a, const Pose& pose_a, const Shape& b, const 
     return std::max(sum, 0.0);
 }
 
-} // namespace raycontact::scenes
+} // namespace raycontact

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <clash/nudged.h>
+#include "clash/nudged.h"
 
-#include <clash/askew.h>
+#include "clash/askew.h"
 
 #include "mesh/vector.h"
 

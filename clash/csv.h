@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <raycontact/clash.h>
+
+#include <string>
+#include <vector>
+
+namespace raycontact::clash {
+
+/// A table as spreadsheets read it (RFC 4180): a line of headers, then one a clash; what there is not is empty.
+std::string csv(const std::vector<AssemblyPart>& parts, const std::vector<Clash>& clashes);
+
+} // namespace raycontact::clash

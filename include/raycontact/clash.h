@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <raycontact/assembly.h>
+#include <raycontact/error.h>
+#include <raycontact/export.h>
+#include <raycontact/query.h>
+#include <raycontact/shape.h>
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+// Which parts of an assembly intersect, how, and how deep. Lengths are in the parts' unit, called metres here; points
+// are in the frame of the assembly, in double. Of parts far from the origin (UTM coordinates) nothing is lost.
+
+namespace raycontact {
+
+/// How two parts lie to each other. Exact but for rounding: what is less than 1e-6 of the smaller part counts as none.
+enum class ClashKind {
+    touching,    ///< they share points, but no depth; or gap and depth are within ClashOptions::tolerance
+    overlapping, ///< their surfaces cross, and what either leaves of the other hangs together
+    /// Their surfaces cross in closed curves, and one part falls apart where the other is taken out of it, as a pipe
+    /// does that goes through a wall: the surface of the rest has more pieces than before, among those that the curves
+    /// lie on. Of two parts that have an inside.
+    piercing,
+    inside,    ///< one lies in the other: no point of it is outside
+    duplicate, ///< the same part in the same place, to 1e-6 of its size
+    near,      ///< they share no point, and are not farther apart than ClashOptions::clearance
+};
+/// "touching", ...: as the program prints it.
+RAYCONTACT_API const char* to_string(ClashKind kind);
+
+/// Two parts that clash.
+struct Clash {
+    std::size_t a = 0; ///< number of a part
+    std::size_t b = 0; ///< number of a later part
+    ClashKind kind = ClashKind::touching;
+    /// Of the deepest contact, metres; 0: they touch; negative: minus the distance of parts that are near. None: no
+    /// rule of contact gives one, as a part is open, intersects itself or winds the wrong way somewhere.
+    std::optional<double> depth = 0;
+    double distance = 0; ///< of parts that share no point, metres
+    Vec3 point;   ///< of that contact: on one part's surface, in the other; else one that both share; near: point_a
+    Vec3 point_a; ///< of that contact, or the closest one: on the surface of a
+    Vec3 point_b; ///< likewise on that of b
+    Vec3 normal;  ///< of that contact, unit, from a to b; near: the way from point_a to point_b; else 0
+    std::size_t contacts = 0;
+    bool open_a = false; ///< a is not closed: nothing is inside it, and a depth says how far it reaches into b alone
+    bool open_b = false; ///< likewise b
+    /// About what both share, along the axes, right to some 1e-7 of the smaller part. Where one of them has no inside:
+    /// about the curves in which they cross. None: they touch, or are near.
+    std::optional<AxisBox> box;
+    std::optional<double> volume; ///< that they share, m^3, if asked for; none where one has no inside
+};
+
+/// What find_clashes() looks for.
+struct ClashOptions {
+    /// Patterns of names of parts or files ("*" stands for any text, "?" for a character). Parts that match are tested
+    /// against all that do not. Empty: all against all.
+    std::vector<std::string> against{};
+    /// Pairs of such patterns: parts of which one matches either are not tested against each other.
+    std::vector<std::array<std::string, 2>> exclude{};
+    bool exclude_parent_child = false; ///< leaves out pairs of a part and its AssemblyPart::parent
+    double clearance = 0;              ///< metres; pairs not farther apart are `near`
+    double tolerance = 0;              ///< metres; depths and gaps up to it are `touching`
+    bool volumes = false;              ///< asks for Clash::volume: seconds for parts of 100 000 triangles
+    std::uint32_t threads = 0;         ///< 0: one per core; no result depends on it
+    /// Told what is done, from 0 to 1; from any thread, but from one at a time.
+    std::function<void(double)> progress = [](double) {};
+    std::function<bool()> stop = [] { return false; }; ///< asked on any thread; true: the search ends there
+};
+
+/// What find_clashes() finds.
+struct ClashReport {
+    /// Deepest first, then those without a depth, then those that touch, then those that are near, the nearest first;
+    /// ties in the parts' order.
+    std::vector<Clash> clashes;
+    std::size_t pairs = 0; ///< that were tested: their boxes, grown by clearance or tolerance, touch
+    std::vector<std::pair<std::size_t, std::string>> faults; ///< parts that could not be tested, and why; rising
+    std::vector<std::size_t> open;                           ///< parts that were tested and are not closed; rising
+};
+
+/// The parts of all files, in their order (load_assembly), under names that differ: where several have the same, the
+/// file is set before it, or a number is added. left_out: gets a line for each thing that was left out or mended, with
+/// the file before it. Throws InputError as load_mesh().
+RAYCONTACT_API std::vector<AssemblyPart> load_parts(const std::vector<std::filesystem::path>& files,
+                                                    std::vector<std::string>* left_out = nullptr);
+
+/// Every pair of parts that shares a point (exactly, as intersects()) or is near. Depths are those of collide(); where
+/// faces coincide, so that rounding would decide, small moves tell touching parts from others. Throws InputError for
+/// fewer than two parts, for a pose that is not rigid, a length that is negative or not finite, a pattern that matches
+/// nothing, `against` that matches all, and more than 1024 threads.
+RAYCONTACT_API ClashReport find_clashes(std::span<const AssemblyPart> parts, const ClashOptions& options = {});
+
+/// The volume that two closed, outward meshes share, m^3; exact but for rounding in double. No predicate decides
+/// anything, so touching and flush faces are no special cases. Where a mesh winds around a point more than once, as
+/// often counts the point. Far slower than contacts. Throws InputError for poses as intersects().
+RAYCONTACT_API double overlap_volume(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b);
+
+} // namespace raycontact

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "clash/parts.h"
+
+#include "executor/executor.h"
+#include "mesh/measure.h"
+#include "printable.h"
+
+#include <raycontact/error.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <mutex>
+#include <set>
+#include <string>
+#include <utility>
+
+namespace raycontact {
+
+namespace {
+
+/// Names that several files have get the file before them, then names that several parts have a number.
+void tell_apart(std::vector<AssemblyPart>& parts) {
+    std::map<std::string, std::set<std::string>> files;
+    for (const AssemblyPart& part : parts) files[part.name].insert(part.file);
+    for (AssemblyPart& part : parts)
+        if (files[part.name].size() > 1)
+            part.name = part.name == std::filesystem::path(part.file).filename().string() ? part.file
+                                                                                          : part.file + ":" + part.name;
+    std::map<std::string, std::size_t> count;
+    for (const AssemblyPart& part : parts) ++count[part.name];
+    std::set<std::string> taken;
+    for (const auto& [name, times] : count) taken.insert(name);
+    std::map<std::string, std::size_t> given;
+    for (AssemblyPart& part : parts) {
+        if (count[part.name] < 2) continue;
+        std::string numbered;
+        do numbered = part.name + " #" + std::to_string(++given[part.name]);
+        while (!taken.insert(numbered).second);
+        part.name = numbered;
+    }
+}
+
+} // namespace
+
+std::vector<AssemblyPart> load_parts(const std::vector<std::filesystem::path>& files,
+                                     std::vector<std::string>* left_out) {
+    std::vector<AssemblyPart> parts;
+    for (const std::filesystem::path& file : files) {
+        const std::size_t first = parts.size();
+        std::vector<std::string> of_file;
+        for (AssemblyPart& part : load_assembly(file, &of_file)) {
+            if (part.parent != AssemblyPart::no_part) part.parent += first;
+            parts.push_back(std::move(part));
+        }
+        if (left_out != nullptr)
+            for (const std::string& words : of_file) left_out->push_back(printable(file.string()) + ": " + words);
+    }
+    tell_apart(parts);
+    return parts;
+}
+
+namespace clash {
+
+namespace {
+
+/// Shapes round vertices to a ten-millionth of their size.
+WorldBox box_of(const Part& part, BodySlot number) {
+    std::vector<Vec3> placed;
+    placed.reserve(part.mesh->vertices.size());
+    for (const Vec3& v : part.mesh->vertices) placed.push_back(transform_point(part.pose, v));
+    const Box box = raycontact::box_of(placed);
+    return {world_box(box, {}, 1e-6 * length(box.high - box.low)), number};
+}
+
+/// The mesh's name before a message; it may be another part's, too.
+std::string without_name(const std::string& message, const std::string& name) {
+    std::string text = message;
+    for (const std::string& prefix : {name + ": ", "mesh '" + name + "': "})
+        if (text.starts_with(prefix)) text.erase(0, prefix.size());
+    return text;
+}
+
+} // namespace
+
+double smaller_size(const Part& a, const Part& b) {
+    const auto size = [](const Shape& shape) { return length(shape.box_max() - shape.box_min()); };
+    return std::min(size(*a.shape), size(*b.shape));
+}
+
+std::vector<Part> parts_of(std::span<const AssemblyPart> given) {
+    // A multiple of this is taken off without rounding, as coordinates that far have no finer digits to lose.
+    constexpr double grid = 1024, far = 1e6;
+    std::map<const Mesh*, std::pair<std::shared_ptr<const Mesh>, Vec3>> near;
+    std::vector<Part> parts;
+    for (const AssemblyPart& part : given) {
+        auto [at, is_new] = near.try_emplace(part.mesh.get(), part.mesh, Vec3{});
+        auto& [mesh, origin] = at->second;
+        if (is_new && !mesh->vertices.empty()) {
+            const Box box = raycontact::box_of(mesh->vertices);
+            const auto coarse = [](double x) { return std::fabs(x) > far ? grid * std::round(x / grid) : 0; };
+            const Vec3 middle = box.middle();
+            origin = {coarse(middle.x), coarse(middle.y), coarse(middle.z)};
+            if (is_finite(origin) && origin != Vec3{}) {
+                auto moved = std::make_shared<Mesh>(*mesh);
+                for (Vec3& v : moved->vertices) v = v - origin;
+                mesh = std::move(moved);
+            } else {
+                origin = {};
+            }
+        }
+        parts.push_back({mesh, {part.pose.rotation, transform_point(part.pose, origin)}, nullptr, {}});
+    }
+    return parts;
+}
+
+std::vector<PartPair> near_boxes(const std::vector<Part>& parts, double reach) {
+    std::vector<WorldBox> boxes;
+    for (std::size_t i = 0; i < parts.size(); ++i) boxes.push_back(box_of(parts[i], static_cast<BodySlot>(i)));
+    std::vector<WorldBox> grown = boxes;
+    const Vec3 half{0.5 * reach, 0.5 * reach, 0.5 * reach};
+    for (WorldBox& box : grown) {
+        box.low = box.low - half;
+        box.high = box.high + half;
+    }
+    std::vector<SlotPair> found;
+    Executor executor(boxes.size() < 1000 ? 1 : 0);
+    BroadPhase().find(executor, grown, found);
+    std::vector<PartPair> pairs;
+    pairs.reserve(found.size());
+    for (const auto& [a, b] : found) pairs.push_back({a, b, !boxes[a].touches(boxes[b])});
+    return pairs;
+}
+
+void make_shapes(std::vector<Part>& parts, const std::vector<PartPair>& pairs, const ClashOptions& options,
+                 const std::function<void(std::size_t, std::size_t)>& progress) {
+    std::map<const Mesh*, std::vector<std::size_t>> users;
+    std::vector<const Mesh*> wanted; // in the parts' order
+    std::vector<char> seen(parts.size(), 0);
+    for (const PartPair& pair : pairs)
+        for (const std::size_t i : {pair.a, pair.b}) {
+            if (std::exchange(seen[i], 1) != 0) continue;
+            std::vector<std::size_t>& of_mesh = users[parts[i].mesh.get()];
+            if (of_mesh.empty()) wanted.push_back(parts[i].mesh.get());
+            of_mesh.push_back(i);
+        }
+    std::mutex mutex;
+    std::size_t done = 0;
+    Executor executor(options.threads);
+    const std::uint32_t of_one = executor.threads_of_each(wanted.size());
+    executor.run(static_cast<std::uint32_t>(wanted.size()), 1, [&](std::uint32_t begin, std::uint32_t end) {
+        for (std::uint32_t i = begin; i < end && !options.stop(); ++i) {
+            std::shared_ptr<const Shape> shape;
+            std::string fault;
+            try {
+                shape = Shape::make(
+                    prepare_mesh(*wanted[i], Repair::allowed, Nesting::as_wound, Check::topology, of_one), of_one);
+            } catch (const InputError& error) {
+                fault = without_name(error.what(), wanted[i]->name);
+            }
+            const std::lock_guard lock(mutex);
+            for (const std::size_t part : users.at(wanted[i])) {
+                parts[part].shape = shape;
+                parts[part].fault = fault;
+            }
+            progress(++done, wanted.size());
+        }
+    });
+}
+
+} // namespace clash
+
+} // namespace raycontact

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "clash/selection.h"
+
+#include <algorithm>
+#include <string_view>
+#include <unordered_map>
+
+namespace raycontact::clash {
+
+namespace {
+
+/// "*" stands for any text, "?" for a character. Goes back to the last "*" alone.
+bool matches(std::string_view pattern, std::string_view text) {
+    constexpr std::size_t none = std::string_view::npos;
+    std::size_t p = 0, t = 0, star = none, from = 0;
+    while (t < text.size()) {
+        if (p < pattern.size() && pattern[p] == '*') {
+            star = p++;
+            from = t;
+        } else if (p < pattern.size() && (pattern[p] == '?' || pattern[p] == text[t])) {
+            ++p;
+            ++t;
+        } else if (star != none) {
+            p = star + 1;
+            t = ++from;
+        } else {
+            return false;
+        }
+    }
+    return pattern.find_first_not_of('*', p) == none;
+}
+
+/// The parts that patterns match, by their names, files, or the names of these without folders.
+class Names {
+public:
+    explicit Names(std::span<const AssemblyPart> parts) {
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            add(parts[i].name, i);
+            if (parts[i].file.empty()) continue;
+            add(parts[i].file, i);
+            add(std::filesystem::path(parts[i].file).filename().string(), i);
+        }
+    }
+
+    std::vector<std::size_t> matched(const std::string& pattern, const std::string& what) const {
+        std::vector<std::size_t> found;
+        const auto add_all = [&](const std::vector<std::size_t>& parts) {
+            found.insert(found.end(), parts.begin(), parts.end());
+        };
+        if (pattern.find_first_of("*?") == std::string::npos) {
+            if (const auto at = parts_of_.find(pattern); at != parts_of_.end()) add_all(at->second);
+        } else {
+            for (const auto& [name, parts] : parts_of_)
+                if (matches(pattern, name)) add_all(parts);
+        }
+        if (found.empty())
+            throw InputError(what + ": no part and no file is called \"" + pattern
+                             + "\"; give a name as clash prints it, or a pattern with * or ?");
+        std::sort(found.begin(), found.end());
+        found.erase(std::unique(found.begin(), found.end()), found.end());
+        return found;
+    }
+
+private:
+    void add(const std::string& name, std::size_t part) { parts_of_[name].push_back(part); }
+    std::unordered_map<std::string, std::vector<std::size_t>> parts_of_;
+};
+
+bool share_one(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) {
+    for (auto i = a.begin(), k = b.begin(); i != a.end() && k != b.end();) {
+        if (*i == *k) return true;
+        ++(*i < *k ? i : k);
+    }
+    return false;
+}
+
+} // namespace
+
+Selection::Selection(std::span<const AssemblyPart> parts, const ClashOptions& options)
+    : parts_(parts), parent_child_(options.exclude_parent_child) {
+    if (options.against.empty() && options.exclude.empty()) return;
+    const Names names(parts);
+    if (!options.against.empty()) {
+        against_.resize(parts.size(), 0);
+        for (const std::string& pattern : options.against)
+            for (const std::size_t part : names.matched(pattern, "against")) against_[part] = 1;
+        if (std::ranges::all_of(against_, [](char matched) { return matched != 0; }))
+            throw InputError("against: all parts match, so there is nothing to test them against; name fewer");
+    }
+    if (options.exclude.empty()) return;
+    for (std::size_t k = 0; k < 2; ++k) {
+        excluded_[k].resize(parts.size());
+        for (std::uint32_t i = 0; i < options.exclude.size(); ++i)
+            for (const std::size_t part :
+                 names.matched(options.exclude[i][k], "exclude, pair " + std::to_string(i + 1)))
+                excluded_[k][part].push_back(i);
+    }
+}
+
+bool Selection::has(std::size_t a, std::size_t b) const {
+    if (!against_.empty() && against_[a] == against_[b]) return false;
+    if (parent_child_ && (parts_[a].parent == b || parts_[b].parent == a)) return false;
+    if (excluded_[0].empty()) return true;
+    return !share_one(excluded_[0][a], excluded_[1][b]) && !share_one(excluded_[0][b], excluded_[1][a]);
+}
+
+} // namespace raycontact::clash

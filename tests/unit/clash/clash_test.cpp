@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: Apache-2.0
+// Boxes, and solids of cubes, whose answers are known by hand; at the origin and at UTM coordinates.
+#include <raycontact/clash.h>
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <set>
+
+namespace raycontact {
+namespace {
+
+constexpr double slack = 1e-5; // a hundred perturbations of the edges' rule
+
+/// Of all unit cubes from (0, 0, 0) to (n, n, n) that `fills` has, scaled to `size` metres, moved by `at`.
+std::shared_ptr<const Mesh> cubes(int n, const std::function<bool(int x, int y, int z)>& fills, const Vec3& size,
+                                  const Vec3& at) {
+    auto mesh = std::make_shared<Mesh>();
+    const auto filled = [&](const std::array<int, 3>& c) {
+        return std::ranges::all_of(c, [&](int k) { return k >= 0 && k < n; }) && fills(c[0], c[1], c[2]);
+    };
+    for (int i = 0; i < n * n * n; ++i) {
+        const std::array<int, 3> cell{i % n, i / n % n, i / n / n};
+        if (!filled(cell)) continue;
+        for (std::size_t k = 0; k < 3; ++k)
+            for (const int side : {0, 1}) {
+                std::array<int, 3> other = cell;
+                other[k] += side == 0 ? -1 : 1;
+                if (filled(other)) continue;
+                const auto first = static_cast<std::uint32_t>(mesh->vertices.size());
+                for (const auto& [u, v] : {std::pair(0, 0), std::pair(1, 0), std::pair(1, 1), std::pair(0, 1)}) {
+                    std::array<int, 3> corner = cell;
+                    corner[k] += side;
+                    corner[(k + 1) % 3] += u;
+                    corner[(k + 2) % 3] += v;
+                    mesh->vertices.push_back(
+                        {at.x + size.x * corner[0], at.y + size.y * corner[1], at.z + size.z * corner[2]});
+                }
+                if (side == 1)
+                    mesh->triangles.insert(mesh->triangles.end(),
+                                           {{first, first + 1, first + 2}, {first, first + 2, first + 3}});
+                else
+                    mesh->triangles.insert(mesh->triangles.end(),
+                                           {{first, first + 2, first + 1}, {first, first + 3, first + 2}});
+            }
+    }
+    return mesh;
+}
+
+AssemblyPart box(const std::string& name, const Vec3& low, const Vec3& high) {
+    const Vec3 size{high.x - low.x, high.y - low.y, high.z - low.z};
+    return {name,
+            cubes(
+                1, [](int, int, int) { return true; }, size, low),
+            {}};
+}
+
+/// A solid of cubes of 1 m.
+AssemblyPart solid(const std::string& name, const std::function<bool(int x, int y, int z)>& fills, const Vec3& at = {},
+                   double size = 1) {
+    return {name, cubes(8, fills, {size, size, size}, at), {}};
+}
+
+std::vector<Clash> clashes_of(const std::vector<AssemblyPart>& parts, const ClashOptions& options = {}) {
+    return find_clashes(parts, options).clashes;
+}
+
+/// Kind of the only clash.
+std::string kind_of(const AssemblyPart& a, const AssemblyPart& b) {
+    const auto found = clashes_of(std::vector{a, b});
+    const auto turned = clashes_of(std::vector{b, a});
+    EXPECT_EQ(found.size(), 1u) << a.name << " x " << b.name;
+    EXPECT_EQ(turned.size(), 1u) << a.name << " x " << b.name;
+    if (found.size() != 1 || turned.size() != 1) return "";
+    EXPECT_EQ(found[0].kind, turned[0].kind) << "whichever comes first: " << a.name << " x " << b.name;
+    return to_string(found[0].kind);
+}
+
+void expect_near(const Vec3& found, const Vec3& expected, double within) {
+    EXPECT_NEAR(found.x, expected.x, within);
+    EXPECT_NEAR(found.y, expected.y, within);
+    EXPECT_NEAR(found.z, expected.z, within);
+}
+
+struct Place {
+    Vec3 by_vertices, by_pose;
+    double unit;
+};
+// The last one as a file in millimetres has it.
+const Place places[] = {{{}, {}, 1},
+                        {{691234.5, 5334567.25, 512.125}, {}, 1},
+                        {{}, {691234.5, 5334567.25, 512.125}, 1},
+                        {{691234500, 5334567250, 512125}, {}, 1000}};
+
+TEST(Clash, KindsOfBoxes) {
+    for (const Place& place : places) {
+        const double u = place.unit;
+        const auto part = [&](const std::string& name, const Vec3& low, const Vec3& high) {
+            const Vec3& o = place.by_vertices;
+            AssemblyPart made = box(name, {o.x + u * low.x, o.y + u * low.y, o.z + u * low.z},
+                                    {o.x + u * high.x, o.y + u * high.y, o.z + u * high.z});
+            made.pose.translation = place.by_pose;
+            return made;
+        };
+        const auto here = [&](const Vec3& p) {
+            return Vec3{(p.x - place.by_vertices.x - place.by_pose.x) / u,
+                        (p.y - place.by_vertices.y - place.by_pose.y) / u,
+                        (p.z - place.by_vertices.z - place.by_pose.z) / u};
+        };
+        const std::vector<AssemblyPart> parts{part("wall", {0, 0, 0}, {1, 4, 4}),
+                                              part("pipe", {-1, 1, 1}, {2, 1.5, 1.5}),
+                                              part("corner", {0.75, 3.75, 3.75}, {1.25, 4.25, 4.25}),
+                                              part("end", {0.5, 0.5, 3}, {2, 1, 3.5}),
+                                              part("inside", {0.25, 2, 2}, {0.75, 2.5, 2.5}),
+                                              part("flush inside", {0.5, 3.5, 0}, {1, 4, 0.5}),
+                                              part("on it", {1, 2, 3}, {1.5, 2.5, 3.5}),
+                                              part("off it", {1.125, 2.5, 0.5}, {1.5, 3, 1}),
+                                              part("far", {9, 9, 9}, {10, 10, 10}),
+                                              part("wall again", {0, 0, 0}, {1, 4, 4})};
+        ClashOptions options;
+        options.against = {"wall"};
+        options.clearance = 0.25 * u;
+        options.volumes = true;
+        std::set<std::string> seen;
+        for (const Clash& c : clashes_of(parts, options)) {
+            ASSERT_EQ(c.a, 0u);
+            const std::string& name = parts[c.b].name;
+            seen.insert(name + ": " + to_string(c.kind));
+            ASSERT_TRUE(c.depth);
+            EXPECT_EQ(c.box.has_value(), *c.depth > 0) << name;
+            const double volume = c.volume.value_or(0) / (u * u * u), depth = *c.depth / u;
+            const auto expect_box = [&](const Vec3& low, const Vec3& high) {
+                ASSERT_TRUE(c.box);
+                expect_near(here(c.box->low), low, slack);
+                expect_near(here(c.box->high), high, slack);
+            };
+            if (name == "pipe") {
+                EXPECT_NEAR(volume, 0.25, 1e-9);
+                expect_box({0, 1, 1}, {1, 1.5, 1.5});
+            } else if (name == "corner") {
+                EXPECT_NEAR(depth, 0.25, slack);
+                EXPECT_NEAR(volume, 1.0 / 64, 1e-9);
+                expect_box({0.75, 3.75, 3.75}, {1, 4, 4});
+            } else if (name == "end") {
+                EXPECT_NEAR(volume, 0.125, 1e-9);
+                expect_box({0.5, 0.5, 3}, {1, 1, 3.5});
+            } else if (name == "inside") {
+                EXPECT_NEAR(depth, 0.75, 0.5 + slack) << "out through one of the wall's sides";
+                expect_box({0.25, 2, 2}, {0.75, 2.5, 2.5});
+                EXPECT_NEAR(volume, 0.125, 1e-9);
+            } else if (name == "flush inside") {
+                expect_box({0.5, 3.5, 0}, {1, 4, 0.5});
+            } else if (name == "on it") {
+                EXPECT_EQ(depth, 0);
+                EXPECT_NEAR(here(c.point).x, 1, slack);
+            } else if (name == "off it") {
+                EXPECT_EQ(c.distance, 0.125 * u);
+                EXPECT_EQ(depth, -0.125);
+                EXPECT_EQ(here(c.point_a).x, 1);
+                EXPECT_EQ(here(c.point_b).x, 1.125);
+                expect_near(c.normal, {1, 0, 0}, 1e-12);
+            } else {
+                EXPECT_NEAR(volume, 16, 1e-7);
+            }
+        }
+        EXPECT_EQ(seen, (std::set<std::string>{"pipe: piercing", "corner: overlapping", "end: overlapping",
+                                               "inside: inside", "flush inside: inside", "on it: touching",
+                                               "off it: near", "wall again: duplicate"}));
+    }
+}
+
+// One part goes through the other if either falls apart: not by the number of curves in which they cross.
+TEST(Clash, PiercingPartsFallApart) {
+    const auto floor = box("floor", {-5, -5, -1}, {15, 15, 0.5});
+    const auto table =
+        solid("table", [](int x, int y, int z) { return z == 7 || ((x == 0 || x == 7) && (y == 0 || y == 7)); });
+    EXPECT_EQ(kind_of(floor, table), "overlapping") << "four legs stand in it";
+    const auto tabletop = box("sheet of a table", {-5, -5, 3}, {15, 15, 3.5});
+    EXPECT_EQ(kind_of(tabletop, table), "piercing") << "the legs fall off";
+
+    const auto tube = [](int x, int y, int) { return x < 3 && y < 3 && !(x == 1 && y == 1); };
+    EXPECT_EQ(kind_of(box("plate", {-5.1, -5.2, -1}, {15, 15.3, 1.25}), solid("cup", tube)), "overlapping")
+        << "a ring in one face, of which the middle is cut off the surface, not off the plate";
+    EXPECT_EQ(kind_of(box("plate", {-5.1, -5.2, 1.75}, {15, 15.3, 2.25}), solid("tube", tube)), "piercing");
+
+    const auto bar = box("bar", {-4, 1, 1}, {9, 2, 2});
+    EXPECT_EQ(kind_of(bar, box("half lapped", {2, -3, 1.5}, {3, 6, 2.5})), "overlapping");
+    EXPECT_EQ(kind_of(bar, box("thinner", {2, -3, 1.25}, {3, 6, 1.75})), "piercing");
+    const auto two_walls =
+        solid("u", [](int x, int y, int z) { return x == 0 || x == 3 ? z < 6 : x < 3 && y < 8 && z == 0; });
+    EXPECT_EQ(kind_of(two_walls, box("pin", {-1, 1.25, 3.25}, {5, 1.5, 3.5})), "piercing") << "through both";
+    EXPECT_EQ(kind_of(two_walls, box("pin", {-1, 1.25, 3.25}, {3.5, 1.5, 3.5})), "piercing") << "through one";
+    EXPECT_EQ(kind_of(two_walls, box("bridge", {0.5, 1.25, 3.25}, {3.5, 1.5, 3.5})), "overlapping")
+        << "its ends are in the walls: what is left of either is in one piece";
+    EXPECT_EQ(kind_of(two_walls, box("peg", {0.5, 1.25, 3.25}, {2.5, 1.5, 3.5})), "overlapping");
+    // Two solids of one part, one of which is cut.
+    const auto pair = solid("two bars", [](int x, int, int z) { return z == 0 && (x == 0 || x == 2); });
+    EXPECT_EQ(kind_of(pair, box("through one", {-1, 3.25, -1}, {1.5, 3.5, 2})), "piercing");
+    EXPECT_EQ(kind_of(pair, box("into one", {-1, 3.25, 0.5}, {0.5, 3.5, 2})), "overlapping");
+}
+
+TEST(Clash, ToleranceWorksOnBothSides) {
+    const std::vector<AssemblyPart> parts{box("a", {0, 0, 0}, {1, 1, 1}), box("in", {0.2, 0.2, 0.995}, {0.8, 0.8, 2}),
+                                          box("off", {1.005, 0.2, 0.2}, {2, 0.8, 0.8}),
+                                          box("deep", {0.2, -1, 0.2}, {0.8, 0.02, 0.8}),
+                                          box("far", {-1, 0.2, 0.2}, {-0.02, 0.8, 0.8})};
+    ClashOptions options;
+    options.against = {"a"};
+    EXPECT_EQ(clashes_of(parts, options).size(), 2u);
+    options.tolerance = 0.01;
+    options.clearance = 0.03;
+    const auto found = clashes_of(parts, options);
+    ASSERT_EQ(found.size(), 4u);
+    EXPECT_EQ(parts[found[0].b].name, "deep");
+    EXPECT_EQ(found[0].kind, ClashKind::overlapping);
+    EXPECT_NEAR(*found[0].depth, 0.02, 1e-6);
+    for (const std::size_t i : {1u, 2u}) {
+        EXPECT_EQ(found[i].kind, ClashKind::touching);
+        EXPECT_EQ(*found[i].depth, 0);
+        EXPECT_FALSE(found[i].box);
+    }
+    EXPECT_EQ(found[1].distance, 0) << "in";
+    EXPECT_NEAR(found[2].distance, 0.005, 1e-12) << "off";
+    EXPECT_EQ(found[3].kind, ClashKind::near);
+    EXPECT_NEAR(found[3].distance, 0.02, 1e-12);
+}
+
+TEST(Clash, OpenPartsAreMarked) {
+    AssemblyPart sheet{"sheet", nullptr, {}};
+    sheet.mesh = std::make_shared<Mesh>(
+        Mesh{"sheet", {{-1, -1, 0.5}, {2, -1, 0.5}, {2, 2, 0.5}, {-1, 2, 0.5}}, {{0, 1, 2}, {0, 2, 3}}});
+    const ClashReport report = find_clashes(std::vector{box("a", {0, 0, 0}, {1, 1, 1}), sheet});
+    ASSERT_EQ(report.clashes.size(), 1u);
+    const Clash& c = report.clashes[0];
+    EXPECT_EQ(c.kind, ClashKind::overlapping);
+    EXPECT_FALSE(c.open_a);
+    EXPECT_TRUE(c.open_b);
+    EXPECT_FALSE(c.volume);
+    ASSERT_TRUE(c.box) << "about the curve in which they cross";
+    expect_near(c.box->low, {0, 0, 0.5}, slack);
+    expect_near(c.box->high, {1, 1, 0.5}, slack);
+    EXPECT_EQ(report.open, std::vector<std::size_t>{1});
+}
+
+TEST(Clash, PairsAreChosen) {
+    std::vector<AssemblyPart> parts;
+    for (int i = 0; i < 6; ++i)
+        parts.push_back(box("part " + std::to_string(i), {0.75 * i, 0, 0}, {0.75 * i + 1, 1, 1}));
+    parts[2].file = "folder/two.obj";
+    parts[4].parent = 3;
+    const auto pairs = [&](const ClashOptions& options) {
+        std::set<std::pair<std::size_t, std::size_t>> found;
+        for (const Clash& c : clashes_of(parts, options)) found.emplace(c.a, c.b);
+        return found;
+    };
+    using Pairs = std::set<std::pair<std::size_t, std::size_t>>;
+    EXPECT_EQ(pairs({}), (Pairs{{0, 1}, {1, 2}, {2, 3}, {3, 4}, {4, 5}}));
+    EXPECT_EQ(pairs({.against = {"two.obj"}}), (Pairs{{1, 2}, {2, 3}}));
+    EXPECT_EQ(pairs({.against = {"folder/*", "part 3"}}), (Pairs{{1, 2}, {3, 4}})) << "not within";
+    EXPECT_EQ(pairs({.exclude = {{"part 1", "part ?"}, {"*5", "part 4"}}}), (Pairs{{2, 3}, {3, 4}}));
+    EXPECT_EQ(pairs({.exclude_parent_child = true}), (Pairs{{0, 1}, {1, 2}, {2, 3}, {4, 5}}));
+    for (const ClashOptions& options :
+         {ClashOptions{.against = {"part 9"}}, ClashOptions{.against = {"*9"}}, ClashOptions{.against = {"*"}},
+          ClashOptions{.exclude = {{"part 1", "parts"}}}, ClashOptions{.clearance = -1},
+          ClashOptions{.tolerance = std::nan("")}, ClashOptions{.threads = 5000}})
+        EXPECT_THROW(find_clashes(parts, options), InputError);
+    EXPECT_THROW(find_clashes(std::span(parts).first(1)), InputError);
+}
+
+TEST(Clash, ProgressIsToldAndASearchCanBeStopped) {
+    const std::vector<AssemblyPart> parts{box("a", {0, 0, 0}, {1, 1, 1}), box("b", {0.5, 0, 0}, {1.5, 1, 1})};
+    std::vector<double> told;
+    ClashOptions options;
+    options.progress = [&](double done) { told.push_back(done); };
+    EXPECT_EQ(clashes_of(parts, options).size(), 1u);
+    EXPECT_TRUE(std::ranges::is_sorted(told));
+    EXPECT_EQ(told.back(), 1);
+    options.stop = [] { return true; };
+    EXPECT_TRUE(clashes_of(parts, options).empty());
+}
+
+} // namespace
+} // namespace raycontact
