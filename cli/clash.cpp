@@ -6,6 +6,7 @@
 #include "cli/program.h"
 #include "cli/progress.h"
 #include "cli/stop.h"
+#include "cli/weld_option.h"
 
 #include <clash/bcf.h>
 #include <clash/coloured.h>
@@ -26,6 +27,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <optional>
 #include <stdexcept>
@@ -47,7 +49,7 @@ constexpr std::array units{Unit{"m", 1}, Unit{"mm", 1e-3}, Unit{"cm", 1e-2}, Uni
 struct Options {
     std::vector<std::string> files, against, exclude;
     double clearance = 0, tolerance = 0;
-    std::optional<double> ignore_touching;
+    std::optional<double> ignore_touching, weld;
     std::string unit; ///< empty: not told
     bool volume = false;
     std::uint32_t threads = 0;
@@ -207,6 +209,13 @@ Result search(const Options& options) {
     std::vector<std::string> left_out;
     result.parts = load_parts({options.files.begin(), options.files.end()}, &left_out);
     for (const std::string& line : left_out) std::cerr << line << '\n';
+    std::map<std::shared_ptr<const Mesh>, std::shared_ptr<const Mesh>> welded;
+    for (AssemblyPart& part : result.parts) {
+        if (!options.weld) break;
+        auto& made = welded[part.mesh];
+        if (!made) made = std::make_shared<const Mesh>(weld_mesh(*part.mesh, *options.weld));
+        part.mesh = made;
+    }
     if (result.parts.size() < 2)
         throw InputError(
             options.files[0]
@@ -278,7 +287,8 @@ void add_clash(CLI::App& app) {
     constexpr double most = 1e9;
     command
         ->add_option("FILES", options->files,
-                     "mesh files; parts are nodes of glTF, objects or groups of OBJ, solids of a text STL")
+                     "mesh files; parts are nodes of glTF, objects that a 3MF places, objects or groups of OBJ, solids "
+                     "of a text STL")
         ->required();
     // One word each, so that FILES may follow.
     command
@@ -308,6 +318,7 @@ void add_clash(CLI::App& app) {
             if (std::ranges::any_of(units, [&](const Unit& unit) { return word == unit.name; })) return std::string();
             return "\"" + word + "\" is no unit; give m, mm, cm or in";
         });
+    add_weld_option(*command, options->weld)->type_name("LENGTH");
     command->add_flag("--volume", options->volume, "also find the volume that two parts share (slow)");
     add_number(*command, "--threads", options->threads, "0: one for each core", 0u, 1024u);
     add_out(*command, "--out", options->out, "write all parts there as .glb, those that clash in red")

@@ -4,6 +4,7 @@
 #include "cli/cavities_option.h"
 #include "cli/common_options.h"
 #include "cli/pairs_file.h"
+#include "cli/weld_option.h"
 
 #include <raycontact/collide.h>
 #include <raycontact/error.h>
@@ -20,6 +21,7 @@
 #include <numbers>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -33,12 +35,14 @@ struct CollideCommand {
     bool json = false;
     Settings settings;
     std::optional<Nesting> nested;
+    std::optional<double> weld; ///< metres
 };
 
 /// Shapes by file and scale: a batch usually names a few meshes in thousands of pairs.
 class ShapeCache {
 public:
-    ShapeCache(Nesting nesting, std::uint32_t threads) : nesting_(nesting), threads_(threads) {}
+    ShapeCache(Nesting nesting, std::optional<double> weld, std::uint32_t threads)
+        : nesting_(nesting), weld_(weld), threads_(threads) {}
     std::shared_ptr<const Shape> get(const PairBody& body) {
         auto& shape = shapes_[{body.file.string(), body.scale}];
         if (!shape) shape = make(body);
@@ -58,6 +62,7 @@ private:
                     throw InputError(body.file.string() + fmt::format(": too large to be scaled by {}", body.scale));
                 }
             }
+            if (weld_) mesh = weld_mesh(std::move(mesh), *weld_);
             return Shape::make(prepare_mesh(mesh, Repair::allowed, nesting_, Check::topology, threads_), threads_);
         } catch (const InputError& error) {
             throw InputError(body.where.empty() ? error.what() : body.where + ": " + error.what());
@@ -65,6 +70,7 @@ private:
     }
 
     Nesting nesting_;
+    std::optional<double> weld_;
     std::uint32_t threads_;
     std::map<std::pair<std::string, double>, std::shared_ptr<const Shape>> shapes_;
 };
@@ -228,7 +234,7 @@ void collide(const CollideCommand& options) {
     check_common_options(options.settings);
     const std::vector<QueryPair> pairs = query_of(options);
     if (pairs.empty() && !options.json) std::cout << "0 pairs\n";
-    ShapeCache shapes(options.nested.value_or(Nesting::as_wound), options.settings.execution.threads);
+    ShapeCache shapes(options.nested.value_or(Nesting::as_wound), options.weld, options.settings.execution.threads);
     for (const QueryPair& pair : pairs) {
         for (const PairBody& body : pair) shapes.get(body);
     }
@@ -269,6 +275,7 @@ void add_collide(CLI::App& app) {
     three("--turn", options->turn, "turn B first, degrees: about the axes x, then y, then z, through its origin");
     command->add_flag("--json", options->json, "print one JSON line a pair on stdout");
     add_cavities_option(*command, options->nested);
+    add_weld_option(*command, options->weld);
     add_common_options(*command, options->settings);
     command->callback([options] { collide(*options); });
 }

@@ -3,17 +3,20 @@
 
 #include "cli/cavities_option.h"
 #include "cli/program.h"
+#include "cli/weld_option.h"
 
 #include <raycontact/error.h>
 #include <raycontact/mesh.h>
 
 #include <CLI/CLI.hpp>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -26,6 +29,7 @@ struct MeshOptions {
     bool as_is = false;
     bool strict = false;
     std::optional<Nesting> nested;
+    std::optional<double> weld; ///< metres
 };
 
 using Json = nlohmann::ordered_json;
@@ -36,11 +40,12 @@ void print_json(const Json& line) {
 }
 
 /// Its own keys come after the file's name.
-void print_json(const std::string& file, const MeshReport& report, const Verdict& verdict) {
+void print_json(const std::string& file, const MeshReport& report, const Verdict& verdict, std::optional<double> weld) {
     Json line{{"file", file}};
     line.update(Json::parse(to_json(report)));
     line["good"] = verdict.good;
     line["verdict"] = verdict.text;
+    line["weld"] = weld ? Json(*weld) : Json();
     print_json(line);
 }
 
@@ -69,12 +74,17 @@ void check_meshes(const MeshOptions& options) {
             verdicts.append(shown).append(": ").append(text).append("\n");
         };
         try {
-            const MeshReport report = prepare_mesh(load_mesh(file), options.as_is ? Repair::as_is : Repair::allowed,
-                                                   options.nested.value_or(Nesting::as_wound))
-                                          .report;
-            const Verdict verdict = verdict_of(report);
+            Mesh mesh = load_mesh(file);
+            if (options.weld) mesh = weld_mesh(std::move(mesh), *options.weld);
+            const PreparedMesh prepared = prepare_mesh(mesh, options.as_is ? Repair::as_is : Repair::allowed,
+                                                       options.nested.value_or(Nesting::as_wound));
+            const MeshReport& report = prepared.report;
+            Verdict verdict = verdict_of(report);
+            const std::optional<double> closing = closing_weld(prepared);
+            if (closing)
+                verdict.text += fmt::format("; its corners differ in their last digits: --weld {} closes it", *closing);
             if (options.json)
-                print_json(file, report, verdict);
+                print_json(file, report, verdict, closing);
             else
                 std::cout << (several ? shown + "\n" : "") << to_text(report) << (several ? "\n" : "");
             add_verdict(verdict.text);
@@ -103,13 +113,14 @@ void check_meshes(const MeshOptions& options) {
 } // namespace
 
 void add_mesh(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("mesh", "Check mesh files: OBJ, STL, PLY, OFF, glTF or GLB");
+    CLI::App* command = app.add_subcommand("mesh", "Check mesh files: OBJ, STL, PLY, OFF, glTF, GLB or 3MF");
     auto options = std::make_shared<MeshOptions>();
     command->add_option("FILE", options->files, "the mesh files; the last lines say what each is good for")->required();
     command->add_flag("--json", options->json, "print one JSON object a file and line on stdout");
     CLI::Option* as_is =
         command->add_flag("--as-is", options->as_is, "report the mesh as the file gives it, repair nothing");
     add_cavities_option(*command, options->nested)->excludes(as_is);
+    add_weld_option(*command, options->weld)->excludes(as_is);
     command->add_flag("--strict", options->strict, "exit status 2 if a mesh is not good for contacts");
     command->callback([options] { check_meshes(*options); });
 }

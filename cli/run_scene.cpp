@@ -4,6 +4,7 @@
 #include "cli/cavities_option.h"
 #include "cli/number_option.h"
 #include "cli/scene_file.h"
+#include "cli/weld_option.h"
 
 #include <raycontact/error.h>
 #include <scenes/avalanche.h>
@@ -47,6 +48,7 @@ void refuse_mesh_options(const RunScene& given) {
     if (given.density) throw InputError("--density" + only);
     if (given.ground) throw InputError("--ground" + only);
     if (given.nested) throw InputError("--cavities" + only);
+    if (given.weld) throw InputError("--weld" + only);
 }
 
 void take_common(SceneOptions& how, const RunScene& given, const Settings& settings) {
@@ -86,6 +88,7 @@ SceneDescription from_meshes(const RunScene& given, const Settings& settings) {
     how.size = given.size;
     how.density = given.density.value_or(how.density);
     how.nesting = given.nested.value_or(how.nesting);
+    how.weld = given.weld;
     how.plane = given.ground == "plane";
     if (given.ground && !how.plane) how.ground = *given.ground;
     SceneDescription scene = own(how);
@@ -96,6 +99,7 @@ SceneDescription from_meshes(const RunScene& given, const Settings& settings) {
     if (given.ground) scene.arguments += " --ground " + shell_word(*given.ground);
     if (given.density) scene.arguments += fmt::format(" --density {}", *given.density);
     if (given.nested) scene.arguments += fmt::format(" --cavities {}", cavities_word(*given.nested));
+    if (given.weld) scene.arguments += fmt::format(" --weld {}", *given.weld);
     return scene;
 }
 
@@ -118,6 +122,7 @@ void add_scene_options(CLI::App& command, RunScene& scene) {
                     "whose contacts are not counted; else a slab")
         ->type_name("FILE|plane");
     add_cavities_option(command, scene.nested);
+    add_weld_option(command, scene.weld);
     add_number(command, "--density", scene.density, "with --mesh: kilograms a cubic metre", 0.0,
                std::numeric_limits<double>::max())
         ->type_name("D")

@@ -20,10 +20,11 @@ struct RunScene {
     std::optional<double> size, density; ///< metres, kg/m^3
     std::optional<std::string> ground;   ///< FILE or "plane"
     std::optional<raycontact::Nesting> nested;
+    std::optional<double> weld; ///< metres
 };
 
-/// Adds SCENE, --mesh, --steps, --bodies, --seed, --size, --ground, --density and --cavities; `scene` is filled while
-/// the command line is read and must outlive it.
+/// Adds SCENE, --mesh, --steps, --bodies, --seed, --size, --ground, --density, --cavities and --weld; `scene` is filled
+/// while the command line is read and must outlive it.
 void add_scene_options(CLI::App& command, RunScene& scene);
 
 /// Throws InputError naming the option, or the file and the field.

@@ -7,14 +7,19 @@
 #include <scenes/meshes_in_words.h>
 
 #include <algorithm>
+#include <utility>
 
 namespace raycontact::scenes {
 
 SceneDescription own(const OwnOptions& options) {
     SceneDescription scene = begin_scene("own", options);
+    const auto load = [&](const std::filesystem::path& file) {
+        Mesh mesh = load_mesh(file);
+        return options.weld ? weld_mesh(std::move(mesh), *options.weld) : mesh;
+    };
     double diameter = 0, largest = 0, smallest = Region::inf;
     for (const std::filesystem::path& file : options.files) {
-        const CentredShape mesh = centred_shape(load_mesh(file), options.size, 1, options.nesting);
+        const CentredShape mesh = centred_shape(load(file), options.size, 1, options.nesting);
         diameter = std::max(diameter, 2 * mesh.shape->radius());
         largest = std::max(largest, mesh.extent);
         smallest = std::min(smallest, mesh.extent);
@@ -28,7 +33,7 @@ SceneDescription own(const OwnOptions& options) {
     std::shared_ptr<const Shape> ground;
     Vec3 middle; // of the grid
     if (options.ground) {
-        ground = Shape::make(prepare_mesh(load_mesh(*options.ground), Repair::allowed, options.nesting));
+        ground = Shape::make(prepare_mesh(load(*options.ground), Repair::allowed, options.nesting));
         const Vec3 low = ground->box_min(), high = ground->box_max();
         middle = {(low.x + high.x) / 2, (low.y + high.y) / 2, 0};
         grid.bottom += high.z;

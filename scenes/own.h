@@ -21,9 +21,11 @@ struct OwnOptions : SceneOptions {
     bool plane = false;                          ///< ... or an endless plane z = 0, whose contacts are not counted
     double density = 1000;                       ///< kg/m^3
     Nesting nesting = Nesting::as_wound;
+    std::optional<double> weld; ///< of weld_mesh(), metres, of the meshes as their files have them
 };
 
-/// The response's size becomes that of the smallest body. Throws InputError as load_mesh and centred_shape do.
+/// The response's size becomes that of the smallest body. Throws InputError as load_mesh, weld_mesh and centred_shape
+/// do.
 SceneDescription own(const OwnOptions& options);
 
 } // namespace raycontact::scenes

@@ -5,12 +5,13 @@
 packages_build=(
     g++ cmake ninja-build pkg-config
     libtbb-dev nlohmann-json3-dev libxxhash-dev                        # the library
+    libexpat1-dev libminizip-dev zlib1g-dev                            # its 3MF files; it builds without them
     ocl-icd-opencl-dev opencl-c-headers                                # its OpenCL devices; it builds without them
     libbullet-dev                                                      # the Bullet adapter
-    libcli11-dev libfmt-dev libmeshoptimizer-dev libembree-dev libstb-dev libwebp-dev libzip-dev zlib1g-dev # the program, its scenes and report
+    libcli11-dev libfmt-dev libmeshoptimizer-dev libembree-dev libstb-dev libwebp-dev libzip-dev # the program, its scenes and report
 )
 packages_core=( # scripts/test core: the library without OpenCL devices, and its own tests
-    g++ cmake ninja-build libtbb-dev nlohmann-json3-dev libxxhash-dev libgtest-dev
+    g++ cmake ninja-build libtbb-dev nlohmann-json3-dev libxxhash-dev libexpat1-dev libminizip-dev zlib1g-dev libgtest-dev
     locales # a test makes a locale with a decimal comma
 )
 packages_demo=(glmark2-data) # the Stanford bunny

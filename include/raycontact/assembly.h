@@ -15,7 +15,7 @@ namespace raycontact {
 
 /// A part of an assembly. Parts that are the same mesh in several places share it.
 struct AssemblyPart {
-    std::string name;                 ///< of its node, "nodes[3]" where it has none, group or solid; or of its file
+    std::string name;                 ///< of its node, "nodes[3]" without, object, group or solid; or of its file
     std::shared_ptr<const Mesh> mesh; ///< metres, in the part's own frame, scaled as the file scales it
     Pose pose;                        ///< of that frame in the assembly; of a mesh with a skin the identity
     std::string file{};               ///< that it is from
@@ -24,11 +24,12 @@ struct AssemblyPart {
     static constexpr std::size_t no_part = static_cast<std::size_t>(-1); ///< the number of none
 };
 
-/// Of a glTF file each node of its scene that places a mesh, in node order; an instance of a node is "NODE[3]". Of an
-/// OBJ file its objects (`o`) if there are several, else its groups (`g`); of a text STL file its solids; of any other
-/// file its one mesh. Groups and solids that are patches of one surface, open where they meet, are one part. Indices of
-/// a part's vertices and triangles begin at 0; those of groups are numbered as their triangles come to them. left_out:
-/// becomes what was left out or mended, in words that name it. Throws InputError as load_mesh().
+/// Of a glTF file each node of its scene that places a mesh, in node order; an instance of a node is "NODE[3]". Of a
+/// 3MF file each object with a mesh as often as its build places it. Of an OBJ file its objects (`o`) if there are
+/// several, else its groups (`g`); of a text STL file its solids; of any other file its one mesh. Groups and solids
+/// that are patches of one surface, open where they meet, are one part. Indices of a part's vertices and triangles
+/// begin at 0; those of groups are numbered as their triangles come to them. left_out: becomes what was left out or
+/// mended, in words that name it. Throws InputError as load_mesh().
 RAYCONTACT_API std::vector<AssemblyPart> load_assembly(const std::filesystem::path& file,
                                                        std::vector<std::string>* left_out = nullptr);
 

@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,10 +16,10 @@
 namespace raycontact {
 
 /// Triangles as a file gives them: nothing welded, nothing repaired, 0-based indices in the file's own order
-/// (OBJ `v` order; STL 3 x facet + corner; PLY and OFF order; glTF in node order). Unused vertices that are not finite
-/// lie where a used one does. A polygon of n corners is n - 2 triangles: the fan of its first corner where that is
-/// right, as it is for convex ones; else ears are cut off it, seen along the axis closest to its normal. One that
-/// crosses itself or has no area stays a fan.
+/// (OBJ `v` order; STL 3 x facet + corner; PLY and OFF order; glTF in node order; 3MF as its build places objects).
+/// Unused vertices that are not finite lie where a used one does. A polygon of n corners is n - 2 triangles: the fan of
+/// its first corner where that is right, as it is for convex ones; else ears are cut off it, seen along the axis
+/// closest to its normal. One that crosses itself or has no area stays a fan.
 struct Mesh {
     std::string name;                                    ///< for messages; the file name when loaded
     std::vector<Vec3> vertices;                          ///< metres, body frame
@@ -26,14 +27,15 @@ struct Mesh {
     std::vector<std::string> repairs = {};               ///< what reading left out or mended, in words with counts
 };
 
-/// Reads OBJ, STL (ASCII and binary), PLY (ASCII and binary), OFF, glTF or GLB; the format is told by the ending
-/// (any case). Throws InputError naming the file, and the line or element where one is to blame, for: another ending, a
-/// missing, unreadable, truncated or damaged file, a folder, what is not read of a format (as compressed glTF), no
-/// triangles or more than 715 827 881, an index out of range, a coordinate not finite of a vertex that a triangle uses.
+/// Reads OBJ, STL (ASCII and binary), PLY (ASCII and binary), OFF, glTF, GLB or 3MF; the format is told by the ending
+/// (any case). 3MF alone says its unit: its lengths become metres. Throws InputError naming the file, and the line or
+/// element where one is to blame, for: another ending, a missing, unreadable, truncated or damaged file, a folder, what
+/// is not read of a format (as compressed glTF), 3MF in a library that is built without it, no triangles or more than
+/// 715 827 881, an index out of range, a coordinate not finite of a vertex that a triangle uses.
 RAYCONTACT_API Mesh load_mesh(const std::filesystem::path& file);
 
 /// How the bytes of a mesh file are read; each format in all the kinds that the load_mesh() of a file reads.
-enum class MeshFormat { obj, stl, ply, off, gltf, glb };
+enum class MeshFormat { obj, stl, ply, off, gltf, glb, threemf };
 
 /// The same from memory: the bytes of a whole file. name: for messages and Mesh::name.
 /// Throws InputError, which names it, as for a file; also for a glTF file whose buffers are files of their own.
@@ -47,6 +49,14 @@ RAYCONTACT_API Mesh make_mesh(std::span<const double> coordinates, std::span<con
 /// The same from single precision. Throws InputError as that does.
 RAYCONTACT_API Mesh make_mesh(std::span<const float> coordinates, std::span<const std::uint32_t> corners,
                               const std::string& name = {});
+
+/// Joins vertices that are nearer than `length` (metres, 1e-12 to 1e9) to each other, as those of a file whose corners
+/// differ in their last digits: they get one place, which prepare_mesh() welds. Each one goes to the nearest of those
+/// that stay, less than `length` away; no two that stay are nearer than `length`. Which stay depends on the coordinates
+/// alone, not on the order of the file. Indices stay. Triangles that lose their area are dropped and counted by
+/// prepare_mesh(). Throws InputError naming the mesh for another length and for coordinates that prepare_mesh()
+/// refuses.
+RAYCONTACT_API Mesh weld_mesh(Mesh mesh, double length);
 
 /// What a mesh is, after the repairs it names.
 struct MeshReport {
@@ -109,6 +119,10 @@ struct PreparedMesh {
 RAYCONTACT_API PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair = Repair::allowed,
                                          Nesting nesting = Nesting::as_wound, Check check = Check::full,
                                          std::uint32_t threads = 0);
+
+/// The length by which weld_mesh() closes an open mesh whose corners differ in their last digits: the least power of
+/// ten that does, metres, up to 1e-4 of the diagonal of its box. None where none does, or the mesh is closed.
+RAYCONTACT_API std::optional<double> closing_weld(const PreparedMesh& mesh);
 
 /// Whether contacts with a mesh are what the rule of contact says: it is closed, wound outward, and does not intersect
 /// itself.

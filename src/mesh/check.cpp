@@ -83,6 +83,15 @@ void check_mesh(const Mesh& mesh, const std::string& name) {
     }
 }
 
+void check_reach(const Mesh& mesh, const std::string& name) {
+    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+        const auto& [x, y, z] = mesh.vertices[i];
+        if (std::max({std::fabs(x), std::fabs(y), std::fabs(z)}) > greatest_coordinate)
+            throw InputError(name + ": vertex " + std::to_string(i) + " (counted from 0)"
+                             + " is further than 1e9 m from the origin; scale the mesh");
+    }
+}
+
 void check_size(std::span<const Vec3> vertices, const std::string& name) {
     const Box box = box_of(vertices);
     for (const double end : {box.low.x, box.low.y, box.low.z, box.high.x, box.high.y, box.high.z}) {

@@ -16,6 +16,9 @@ void check_mesh(const Mesh& mesh, const std::string& name);
 /// the products underflow (the first contacts go wrong at some 1e-10 m). Metres.
 constexpr double greatest_coordinate = 1e9, least_size = 1e-6;
 
+/// Throws InputError, which calls the mesh `name`, where a vertex lies further from the origin.
+void check_reach(const Mesh& mesh, const std::string& name);
+
 /// Throws InputError, which calls the mesh `name`, where its box is smaller or reaches further.
 void check_size(std::span<const Vec3> vertices, const std::string& name);
 

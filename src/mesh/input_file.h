@@ -57,10 +57,12 @@ Mesh read_stl(const InputFile& file);
 Mesh read_ply(const InputFile& file);
 Mesh read_off(const InputFile& file);
 Mesh read_gltf(const InputFile& file);
+Mesh read_3mf(const InputFile& file);
 // Of the formats that have parts; what was left out or mended is appended to `notes`.
 std::vector<AssemblyPart> read_obj_parts(const InputFile& file, std::vector<std::string>& notes);
 std::vector<AssemblyPart> read_stl_parts(const InputFile& file, std::vector<std::string>& notes);
 std::vector<AssemblyPart> read_gltf_parts(const InputFile& file, std::vector<std::string>& notes);
+std::vector<AssemblyPart> read_3mf_parts(const InputFile& file, std::vector<std::string>& notes);
 
 /// A number at `at` in the byte order of the file; the caller has checked that sizeof(T) bytes are there.
 template <class T>

@@ -26,13 +26,14 @@ constexpr std::array formats{Format{".obj", &read_obj, &read_obj_parts},
                              Format{".ply", &read_ply},
                              Format{".off", &read_off},
                              Format{".gltf", &read_gltf, &read_gltf_parts},
-                             Format{".glb", &read_gltf, &read_gltf_parts}};
+                             Format{".glb", &read_gltf, &read_gltf_parts},
+                             Format{".3mf", &read_3mf, &read_3mf_parts}};
 
 const Format& format_of(const InputFile& file) {
     const std::string ending = lower_case(file.path.extension().string());
     for (const Format& format : formats)
         if (ending == format.ending) return format;
-    file.fail("unknown ending " + in_quotes(ending) + "; known are .obj .stl .ply .off .gltf .glb");
+    file.fail("unknown ending " + in_quotes(ending) + "; known are .obj .stl .ply .off .gltf .glb .3mf");
 }
 
 Mesh read_mesh(const Format& format, const InputFile& file, const std::string& name) {

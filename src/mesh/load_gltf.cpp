@@ -42,7 +42,7 @@ public:
         std::vector<std::size_t> places; // of their nodes
         for_each_placed_mesh([&](const PlacedMesh& placed) {
             if (!is_finite(placed.placement.origin)) fail(placed.node, "is placed where no number is finite");
-            const auto [pose, own] = split(placed.placement);
+            const auto [pose, own] = scales_.split(placed.placement);
             auto& made = known[key_of(placed, own)];
             if (!made) {
                 read_mesh(placed, own);
@@ -183,37 +183,6 @@ private:
             const std::string name = placed.mesh.name + ".primitives[" + std::to_string(i) + "]";
             read_primitive({primitives[i], name}, placed, placement);
         }
-    }
-
-    /// A pose, and what is left to be done to the mesh first: a scale where the placement turns and scales alike in all
-    /// directions, else all but its translation.
-    std::pair<Pose, Placement> split(const Placement& placement) {
-        Pose pose;
-        pose.translation = placement.origin;
-        const auto& [x, y, z, origin] = placement;
-        const double size = std::cbrt(dot(x, cross(y, z)));
-        // Files have such numbers in float32.
-        constexpr double alike = 1e-5;
-        const auto is_one = [&](double square) { return std::fabs(square / (size * size) - 1) < alike; };
-        const auto is_none = [&](double product) { return std::fabs(product / (size * size)) < alike; };
-        if (!(size > 0) || !is_one(dot(x, x)) || !is_one(dot(y, y)) || !is_one(dot(z, z)) || !is_none(dot(x, y))
-            || !is_none(dot(y, z)) || !is_none(dot(z, x)))
-            return {pose, {x, y, z, {}}};
-        const double scale = shared_scale(size);
-        const Vec3 &u = (1 / size) * x, &v = (1 / size) * y, &w = (1 / size) * z;
-        pose = pose_from_matrix(
-            std::array{u.x, v.x, w.x, origin.x, u.y, v.y, w.y, origin.y, u.z, v.z, w.z, origin.z, 0.0, 0.0, 0.0, 1.0});
-        return {pose, {{scale, 0, 0}, {0, scale, 0}, {0, 0, scale}, {}}};
-    }
-
-    /// Scales that differ by the rounding of float32 matrices alone are one: the first of them, to seven digits. The
-    /// digits of those just below a power of ten are counted from it, as 0.99999998 means 1.
-    double shared_scale(double size) {
-        constexpr double alike = 1e-6;
-        const auto known = scales_.lower_bound((1 - alike) * size);
-        if (known != scales_.end() && *known <= (1 + alike) * size) return *known;
-        const double unit = std::pow(10.0, std::floor(std::log10((1 + alike) * size)) - 7);
-        return *scales_.insert(std::round(size / unit) * unit).first;
     }
 
     /// The same for meshes that are the same once `own` is done to them.
@@ -431,7 +400,7 @@ private:
     std::set<std::size_t> with_others_;                        ///< meshes that hold more than triangles
     std::size_t nonfinite_ = 0;                                ///< vertices that no triangle uses
     std::size_t moves_ = 0;                                    ///< steps of morph targets and skins
-    std::set<double> scales_;                                  ///< of parts
+    PartScales scales_;
     std::size_t before_ = 0; ///< vertices and triangles of the meshes before this one, where they are read apart
     Mesh mesh_;
 };

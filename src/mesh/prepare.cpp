@@ -121,13 +121,7 @@ PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair, Nesting nesting, Chec
     const FloatEnvironment environment; // the predicates need rounding to nearest
     const std::string name = mesh.name.empty() ? "mesh" : printable(mesh.name);
     check_mesh(mesh, name);
-    for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
-        // Products of four coordinates must fit float32, with which rays are cast.
-        const auto& [x, y, z] = mesh.vertices[i];
-        if (std::max({std::fabs(x), std::fabs(y), std::fabs(z)}) > greatest_coordinate)
-            throw InputError(name + ": vertex " + std::to_string(i) + " (counted from 0)"
-                             + " is further than 1e9 m from the origin; scale the mesh");
-    }
+    check_reach(mesh, name);
     PreparedMesh prepared = weld(mesh);
     if (repair == Repair::allowed) drop_triangles(prepared, mesh.vertices);
     number_vertices(mesh, prepared);

@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// raycontact mesh: several files, a verdict for each, --strict, --cavities; the other commands' --cavities.
+// raycontact mesh: several files, a verdict for each, --strict, --cavities, --weld; the other commands' --cavities and
+// --weld.
 #include "expect.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <vector>
 
 namespace {
 
@@ -17,6 +23,30 @@ std::string cube_at(double at, double edge, int before) {
         text += "f";
         for (const int corner : face) text.append(" ").append(std::to_string(before + corner + 1));
         text += "\n";
+    }
+    return text;
+}
+
+/// A cube as three corners for each triangle, which differ by some 1e-7: from `side` along x and y, from `low` along z.
+std::string loose_cube(double side, double low, double edge) {
+    constexpr int faces[6][4] = {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}};
+    std::string text;
+    char line[100];
+    int corner = 0;
+    for (const auto& face : faces)
+        for (const int k : {0, 1, 2, 0, 2, 3}) {
+            text += "v";
+            for (const int bit : {1, 2, 4}) {
+                const double off = 1e-8 * ((++corner * 37) % 11 - 5);
+                std::snprintf(line, sizeof line, " %.9f",
+                              (bit == 4 ? low : side) + ((face[k] & bit) != 0 ? edge : 0) + off);
+                text += line;
+            }
+            text += "\n";
+        }
+    for (int v = 1; v <= 36; v += 3) {
+        std::snprintf(line, sizeof line, "f %d %d %d\n", v, v + 1, v + 2);
+        text += line;
     }
     return text;
 }
@@ -136,6 +166,39 @@ TEST_F(MeshCommand, CollideAndRunTakeTheSameWord) {
     expect_refused(run({"collide", "cube.obj", "cube.obj", "--cavities", "no"}), "--cavities");
     expect_refused(run({"run", "avalanche", "--cavities", "undo"}), "--cavities");
     EXPECT_EQ(run({"run", "--mesh", "nested.obj", "--cavities", "make", "--steps", "2", "--bodies", "2"}).status, 0);
+}
+
+TEST_F(MeshCommand, ProposesALengthThatClosesAndTheCommandsTakeIt) {
+    folder_.write("a.obj", loose_cube(0, 0, 1));
+    folder_.write("b.obj", loose_cube(0.25, 0.9, 0.5));
+    const auto open = json_lines(run({"mesh", "a.obj", "open.obj", "cube.obj", "--json"}).out);
+    EXPECT_EQ(open.at(0)["weld"], 1e-6);
+    EXPECT_EQ(open.at(0)["good"], false);
+    const std::string verdict = open.at(0)["verdict"];
+    EXPECT_TRUE(verdict.ends_with("its corners differ in their last digits: --weld 1e-06 closes it")) << verdict;
+    EXPECT_TRUE(open.at(1)["weld"].is_null());
+    EXPECT_TRUE(open.at(2)["weld"].is_null());
+    const auto welded = json_lines(run({"mesh", "a.obj", "--weld", "1e-6", "--json"}).out).at(0);
+    EXPECT_EQ(welded["good"], true);
+    EXPECT_EQ(welded["vertices"], 8);
+    const std::string repair = welded["repairs"].at(0);
+    EXPECT_TRUE(repair.starts_with("welded ")) << repair;
+
+    const auto depth = [&](std::vector<std::string> words) {
+        double deepest = 0;
+        for (const auto& line : json_lines(run(words).out)) {
+            if (line.contains("depth") && !line["depth"].is_null()) deepest = line["depth"];
+            if (!line.contains("pair")) continue;
+            for (const auto& contact : line["contacts"]) deepest = std::max(deepest, contact["depth"].get<double>());
+        }
+        return deepest;
+    };
+    EXPECT_NEAR(depth({"collide", "a.obj", "b.obj", "--json", "--weld", "1e-6"}), 0.1, 1e-6);
+    EXPECT_NEAR(depth({"clash", "a.obj", "b.obj", "--json", "--weld", "1e-6"}), 0.1, 1e-6);
+    EXPECT_EQ(run({"run", "--mesh", "a.obj", "--weld", "1e-6", "--steps", "2", "--bodies", "2"}).status, 0);
+    expect_refused(run({"run", "avalanche", "--weld", "1e-6"}), "--weld");
+    expect_refused(run({"mesh", "a.obj", "--weld", "0"}), "--weld");
+    expect_refused(run({"mesh", "a.obj", "--weld", "1e-6", "--as-is"}), "--weld");
 }
 
 TEST_F(MeshCommand, SaysWhatReadingLeftOut) {

@@ -2,6 +2,9 @@
 // Sound files with some bytes changed, cut or doubled at random: each loads or is refused, and nothing else happens.
 // Worth most under AddressSanitizer and UndefinedBehaviorSanitizer.
 #include "tests/unit/mesh/formats.h"
+#ifdef RAYCONTACT_3MF
+#include "tests/unit/mesh/packages.h"
+#endif
 #include "tests/unit/mesh/solids.h"
 
 #include "mesh/input_file.h"
@@ -139,5 +142,21 @@ TEST(FuzzMesh, GlbJsonAlone) {
     folder.write("m.bin", gltf_buffer(sound()));
     fuzz(&read_gltf, gltf_json(sound(), nodes, "m.bin"), rounds, folder.path() / "m.gltf");
 }
+#ifdef RAYCONTACT_3MF
+TEST(FuzzMesh, Packages) {
+    fuzz(&read_3mf, as_3mf(sound()), rounds);
+}
+TEST(FuzzMesh, ModelsInPackages) {
+    const std::string pair =
+        R"(<component objectid="1" transform="1 0 0 0 1 0 0 0 1 4 0 0"/><component objectid="1"/>)";
+    fuzz(
+        [](const InputFile& model) {
+            return read_3mf({model.path, model.shown, zip_of(parts_3mf(model.bytes), false)});
+        },
+        model_3mf(object_3mf(sound(), R"(id="1")") + R"(<object id="2"><components>)" + pair + "</components></object>",
+                  R"(<item objectid="2"/>)"),
+        rounds);
+}
+#endif
 
 } // namespace

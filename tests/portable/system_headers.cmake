@@ -10,7 +10,7 @@ set(dialects src/device/opencl/dialect.h src/device/cuda/dialect.h) # compiled o
 
 set(known "[a-z0-9_]+" # the C++ standard's have no dot
     "(raycontact|recording|nlohmann|nanobind|oneapi/tbb|CL|LinearMath|BulletCollision|BulletDynamics)/[A-Za-z0-9_./]+"
-    "(Python|xxhash|zlib)\\.h")
+    "(Python|expat|unzip|xxhash|zlib)\\.h")
 list(JOIN known "|" known)
 set(posix "newlocale|uselocale|strto[a-z]+_l|ssize_t|off_t|mkstemp|getpid|usleep|localtime_r|gmtime_r|strerror_r|setenv|fileno|isatty|popen")
 set(of_compilers "__builtin_|__attribute__|__restrict__|__int128|__typeof|__GNUC__|__clang__|_MSC_VER|__linux__|__GLIBC__|[^a-z_]gnu::")

@@ -11,6 +11,7 @@ import signal
 import subprocess
 import sys
 import threading
+import zipfile
 
 import meshes
 import numpy as np
@@ -77,6 +78,50 @@ def test_a_scale_turns_millimetres_into_metres(tmp_path):
     for mesh in (rc.Mesh(tmp_path / "box.stl", scale=0.001), rc.Mesh(vertices, faces, scale=0.001)):
         assert rc.Shape(mesh).mass.volume == pytest.approx(1.0)
     assert rc.Mesh(tmp_path / "box.stl", scale=0.001).name == "box.stl"
+
+
+def loose(vertices, faces, noise):
+    """Three corners for each triangle, which differ in their last digits."""
+    corners = vertices[faces].reshape(-1, 3)
+    return corners + RNG.uniform(-noise, noise, corners.shape), np.arange(len(corners)).reshape(-1, 3)
+
+
+def test_corners_that_differ_in_their_last_digits_are_welded():
+    corners, faces = loose(*meshes.box(), 5e-8)
+    assert not rc.Shape(rc.Mesh(corners, faces)).report.closed
+    mesh = rc.Mesh(corners * 1000, faces, scale=0.001, weld=1e-6)
+    assert len(mesh.vertices) == 36 and mesh.repairs[0].startswith("welded 28 vertices")
+    assert np.linalg.norm(mesh.vertices - corners, axis=1).max() < 1e-6
+    report = rc.Shape(pickle.loads(pickle.dumps(mesh))).report
+    assert report.good and report.vertices == 8 and report.repairs == mesh.repairs
+    assert rc.Mesh(mesh, scale=2).repairs == mesh.repairs
+    with pytest.raises(rc.InputError, match="cannot be welded by 0 m"):
+        rc.Mesh(corners, faces, weld=0)
+
+
+def test_a_3mf_file_is_an_assembly_in_metres(tmp_path):
+    corners, faces = loose(*meshes.box((1000, 1000, 1000)), 5e-5)
+    model = (
+        '<model xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02"><resources>'
+        '<object id="1" name="cube"><mesh><vertices>'
+        + "".join(f'<vertex x="{x}" y="{y}" z="{z}"/>' for x, y, z in corners)
+        + "</vertices><triangles>"
+        + "".join(f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in faces)
+        + '</triangles></mesh></object></resources><build><item objectid="1"/>'
+        '<item objectid="1" transform="1 0 0 0 1 0 0 0 1 2000 0 0"/></build></model>'
+    )
+    kind = "http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel"
+    with zipfile.ZipFile(tmp_path / "two.3mf", "w", zipfile.ZIP_DEFLATED) as package:
+        package.writestr(
+            "_rels/.rels", f'<Relationships><Relationship Type="{kind}" Target="/a.model"/></Relationships>'
+        )
+        package.writestr("a.model", model)
+    parts = rc.load_assembly(tmp_path / "two.3mf", weld=1e-6)
+    assert [part.name for part in parts] == ["cube", "cube"] and parts[0].mesh is parts[1].mesh
+    assert parts[1].pose[:3, 3] == pytest.approx([2, 0, 0])
+    assert rc.Shape(parts[0].mesh).report.volume == pytest.approx(1, abs=1e-6)
+    whole = rc.Mesh.from_bytes((tmp_path / "two.3mf").read_bytes(), "3mf")
+    assert len(whole.vertices) == 72 and whole.vertices[:, 0].max() == pytest.approx(2.5)
 
 
 def test_an_assembly_shares_its_meshes(tmp_path):

@@ -12,12 +12,17 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._arrays import as_numbers, as_scale
+from ._arrays import as_length, as_numbers, as_scale
 from ._core import InputError, MeshReport
 
 
 class HasFaces(Protocol):
     """A mesh of another library, as far as it is looked at; a `trimesh.Trimesh` is one."""
+
+    @property
+    def repairs(self) -> list[str]:
+        """What reading a file left out or mended, in words with counts; `Shape.report.repairs` has them, too."""
+        return self._core.repairs
 
     @property
     def vertices(self) -> ArrayLike:
@@ -31,25 +36,40 @@ class HasFaces(Protocol):
 class Mesh:
     """Triangles as a file or arrays give them: nothing is welded, nothing repaired (that is `Shape`).
 
-    `Mesh("part.stl")` reads OBJ, STL, PLY, OFF, glTF or GLB, told by the ending. `Mesh(vertices, triangles)` takes
+    `Mesh("part.stl")` reads OBJ, STL, PLY, OFF, glTF, GLB or 3MF, told by the ending. `Mesh(vertices, triangles)` takes
     arrays: (n, 3) numbers, metres, body frame; (m, 3) whole numbers from 0, counter-clockwise seen from outside.
     `Mesh(mesh)` takes an object with `vertices` and `faces`, such as a `trimesh.Trimesh`. What is given is copied.
 
-    scale: what coordinates are multiplied by; 0.001 for a file in millimetres.
+    scale: what coordinates are multiplied by; 0.001 for a file in millimetres. 3MF says its unit: its are metres.
+    weld: metres, after scale: vertices that are nearer to each other are joined, as those of a file whose corners
+        differ in their last digits. None moves farther; `repairs` says how many did.
     name: for messages; that of the file where one is read.
 
     Raises InputError (a ValueError) naming the file or the element to blame: a file that is missing, unreadable or
-    damaged, no triangles, a vertex that does not exist, a coordinate that is not finite, arrays of other shapes.
+    damaged, no triangles, a vertex that does not exist, a coordinate that is not finite, arrays of other shapes, a
+    weld not from 1e-12 to 1e9.
     """
 
     @overload
     def __init__(
-        self, source: MeshLike, triangles: None = None, *, scale: float = 1.0, name: Optional[str] = None
+        self,
+        source: MeshLike,
+        triangles: None = None,
+        *,
+        scale: float = 1.0,
+        weld: Optional[float] = None,
+        name: Optional[str] = None,
     ) -> None: ...
 
     @overload
     def __init__(
-        self, source: ArrayLike, triangles: ArrayLike, *, scale: float = 1.0, name: Optional[str] = None
+        self,
+        source: ArrayLike,
+        triangles: ArrayLike,
+        *,
+        scale: float = 1.0,
+        weld: Optional[float] = None,
+        name: Optional[str] = None,
     ) -> None: ...
 
     def __init__(
@@ -58,31 +78,14 @@ class Mesh:
         triangles: Optional[ArrayLike] = None,
         *,
         scale: float = 1.0,
+        weld: Optional[float] = None,
         name: Optional[str] = None,
     ) -> None:
-        given: Any = source
-        if isinstance(given, (str, os.PathLike)):
-            if triangles is not None:
-                raise InputError("Mesh: give a file, or vertices and triangles")
-            self._core = _core.load_mesh(os.fspath(given))
-            if scale != 1.0 or name is not None:
-                self._core = _scaled(self._core, scale, name)
-            return
-        if isinstance(given, Mesh) and triangles is None:
-            self._core = _scaled(given._core, scale, name)
-            return
-        if triangles is None:
-            if not (hasattr(given, "vertices") and hasattr(given, "faces")):
-                raise InputError(
-                    f"Mesh: {type(given).__name__} is no file name and has no vertices and faces; "
-                    "give a file, vertices and triangles, or such an object"
-                )
-            given, triangles = given.vertices, given.faces
-        self._core = _make(given, triangles, scale, name or "")
+        self._core = _welded(_core_of(source, triangles, scale, name), weld)
 
     @classmethod
     def from_bytes(cls, data: bytes, format: str, name: str = "") -> Mesh:
-        """A mesh from the bytes of a whole file. format: "obj", "stl", "ply", "off", "gltf" or "glb".
+        """A mesh from the bytes of a whole file. format: "obj", "stl", "ply", "off", "gltf", "glb" or "3mf".
 
         Raises InputError as for a file, and for a glTF whose buffers are files of their own.
         """
@@ -132,6 +135,31 @@ def _unpickled(vertices: NDArray[np.float64], triangles: NDArray[np.uint32], nam
     return Mesh._wrap(_make(vertices, triangles, 1.0, name, repairs))
 
 
+def _core_of(
+    source: Union[MeshLike, ArrayLike], triangles: Optional[ArrayLike], scale: float, name: Optional[str]
+) -> _core.Mesh:
+    given: Any = source
+    if isinstance(given, (str, os.PathLike)):
+        if triangles is not None:
+            raise InputError("Mesh: give a file, or vertices and triangles")
+        core = _core.load_mesh(os.fspath(given))
+        return core if scale == 1.0 and name is None else _scaled(core, scale, name)
+    if isinstance(given, Mesh) and triangles is None:
+        return _scaled(given._core, scale, name)
+    if triangles is None:
+        if not (hasattr(given, "vertices") and hasattr(given, "faces")):
+            raise InputError(
+                f"Mesh: {type(given).__name__} is no file name and has no vertices and faces; "
+                "give a file, vertices and triangles, or such an object"
+            )
+        given, triangles = given.vertices, given.faces
+    return _make(given, triangles, scale, name or "")
+
+
+def _welded(core: _core.Mesh, weld: Optional[float]) -> _core.Mesh:
+    return core if weld is None else _core.weld_mesh(core, as_length(weld, "weld"))
+
+
 def _make(
     vertices: ArrayLike, triangles: ArrayLike, scale: float, name: str, repairs: Iterable[str] = ()
 ) -> _core.Mesh:
@@ -158,7 +186,7 @@ def _scaled(core: _core.Mesh, scale: float, name: Optional[str]) -> _core.Mesh:
 class AssemblyPart(NamedTuple):
     """A part of an assembly.
 
-    name: of its node, "nodes[3]" where it has none, group or solid; or of its file.
+    name: of its node, "nodes[3]" where it has none, object, group or solid; or of its file.
     mesh: metres, in the part's own frame, scaled as the file scales it. Parts that are one mesh in several places share
         it.
     pose: (4, 4) float64, rigid, from the part's frame to that of the assembly, metres.
@@ -169,16 +197,19 @@ class AssemblyPart(NamedTuple):
     pose: NDArray[np.float64]
 
 
-def load_assembly(file: Union[str, os.PathLike[str]], *, scale: float = 1.0) -> list[AssemblyPart]:
-    """Of a glTF file each node of its scene that places a mesh, in node order; of OBJ its objects or groups, of text STL
-    its solids; of any other file its one mesh. What is left out is told by a UserWarning that names it.
+def load_assembly(
+    file: Union[str, os.PathLike[str]], *, scale: float = 1.0, weld: Optional[float] = None
+) -> list[AssemblyPart]:
+    """Of a glTF file each node of its scene that places a mesh, in node order; of a 3MF file each object with a mesh as
+    often as its build places it; of OBJ its objects or groups, of text STL its solids; of any other file its one mesh.
+    What is left out is told by a UserWarning that names it.
 
-    scale: what coordinates and places are multiplied by; 0.001 for a file in millimetres. Raises InputError as `Mesh`
-    does for a file.
+    scale: what coordinates and places are multiplied by; 0.001 for a file in millimetres. weld: as `Mesh` has it, of
+    each part by itself. Raises InputError as `Mesh` does for a file.
     """
     parts, left_out = _core.load_assembly(os.fspath(file))
     tell(f"{os.fspath(file)}: {words}" for words in left_out)
-    return scaled_parts(parts, scale)
+    return scaled_parts(parts, scale, weld)
 
 
 def tell(left_out: Iterable[str]) -> None:
@@ -187,14 +218,16 @@ def tell(left_out: Iterable[str]) -> None:
         warnings.warn(words, stacklevel=3)
 
 
-def scaled_parts(parts: Iterable[tuple[str, _core.Mesh, NDArray[np.float64]]], scale: float) -> list[AssemblyPart]:
+def scaled_parts(
+    parts: Iterable[tuple[str, _core.Mesh, NDArray[np.float64]]], scale: float, weld: Optional[float] = None
+) -> list[AssemblyPart]:
     """Of parts as the C++ half gives them; those that share a mesh share it afterwards."""
     by = as_scale(scale)
     kept, shared = list(parts), {}  # the list keeps each core, so their ids stay theirs
     made = []
     for name, core, poses in kept:
         if id(core) not in shared:
-            shared[id(core)] = Mesh._wrap(core if by == 1.0 else _scaled(core, by, None))
+            shared[id(core)] = Mesh._wrap(_welded(core if by == 1.0 else _scaled(core, by, None), weld))
         pose = poses[0]
         pose[:3, 3] *= by
         made.append(AssemblyPart(name, shared[id(core)], pose))

@@ -30,9 +30,10 @@ MeshFormat format_from(std::string_view word) {
                                        {"ply", ply},
                                        {"off", off},
                                        {"gltf", gltf},
-                                       {"glb", glb}})
+                                       {"glb", glb},
+                                       {"3mf", threemf}})
         if (word == name) return format;
-    throw InputError("format \"" + std::string(word) + "\" is not known; give obj, stl, ply, off, gltf or glb");
+    throw InputError("format \"" + std::string(word) + "\" is not known; give obj, stl, ply, off, gltf, glb or 3mf");
 }
 
 void bind_report(nb::module_& m) {
@@ -110,6 +111,9 @@ void bind_mesh(nb::module_& m) {
             return mesh;
         },
         "vertices"_a, "triangles"_a, "name"_a, "repairs"_a);
+    m.def(
+        "weld_mesh", [](const Mesh& mesh, double length) { return weld_mesh(mesh, length); }, "mesh"_a, "length"_a,
+        nb::call_guard<WithoutGil>());
     m.def(
         "load_assembly",
         [](const std::filesystem::path& file) {
