@@ -160,7 +160,9 @@ def clash(
     given, files, parents = _parts_of(assembly)
     parts = scaled_parts(given, scale)
     if len(parts) < 2:
-        raise InputError(f"clash: {len(parts)} part given; give several, or a file that has parts: nodes, objects, groups or solids")
+        raise InputError(
+            f"clash: {len(parts)} part given; give several, or a file that has parts: nodes, objects, groups or solids"
+        )
     names = [part.name for part in parts]
     poses = np.ascontiguousarray(np.stack([part.pose for part in parts]))
     meshes = [part.mesh._core for part in parts]
