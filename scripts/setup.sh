@@ -11,7 +11,7 @@ packages_build=(
     libcli11-dev libfmt-dev libmeshoptimizer-dev libembree-dev libstb-dev libwebp-dev libzip-dev # the program, its scenes and report
 )
 packages_core=( # scripts/test core: the library without OpenCL devices, and its own tests
-    g++ cmake ninja-build libtbb-dev nlohmann-json3-dev libxxhash-dev libexpat1-dev libminizip-dev zlib1g-dev libgtest-dev
+    g++ cmake ninja-build pkg-config libtbb-dev nlohmann-json3-dev libxxhash-dev libexpat1-dev libminizip-dev zlib1g-dev libgtest-dev
     locales # a test makes a locale with a decimal comma
 )
 packages_demo=(glmark2-data) # the Stanford bunny
