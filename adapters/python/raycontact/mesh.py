@@ -20,11 +20,6 @@ class HasFaces(Protocol):
     """A mesh of another library, as far as it is looked at; a `trimesh.Trimesh` is one."""
 
     @property
-    def repairs(self) -> list[str]:
-        """What reading a file left out or mended, in words with counts; `Shape.report.repairs` has them, too."""
-        return self._core.repairs
-
-    @property
     def vertices(self) -> ArrayLike:
         """(n, 3) numbers, metres, body frame."""
 
