@@ -12,6 +12,7 @@
 #include <memory>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 namespace raycontact::clash {
 
@@ -71,7 +72,7 @@ std::string length_text(double length, const BcfOptions& options) {
 std::string markup(const std::string& guid, const std::string& view, std::size_t index, const std::string& title,
                    const Clash& c, const BcfOptions& options) {
     std::string description = to_string(c.kind);
-    if (c.kind == ClashKind::near)
+    if (c.kind == ClashKind::nearby)
         description += ", apart by " + length_text(c.distance, options);
     else if (!c.depth)
         description += ", no depth";
@@ -96,62 +97,67 @@ std::string viewpoint(const std::string& view, const Clash& c, double size, cons
                        three("CameraDirection", direction), three("CameraUpVector", up));
 }
 
+/// A ZIP archive in memory.
 class Zip {
 public:
     Zip() {
-        zip_error_t error;
-        zip_error_init(&error);
-        // The source outlives the archive, which would free it.
-        source_ = zip_source_buffer_create(nullptr, 0, 0, &error);
-        if (source_ != nullptr) zip_source_keep(source_);
-        archive_ = source_ == nullptr ? nullptr : zip_open_from_source(source_, ZIP_TRUNCATE, &error);
-        const std::string why = zip_error_strerror(&error);
-        zip_error_fini(&error);
-        if (archive_ != nullptr) return;
-        if (source_ != nullptr) {
-            zip_source_free(source_);
-            zip_source_free(source_);
-        }
-        throw std::runtime_error("the BCF file cannot be made: " + why);
+        zlib_filefunc64_def memory{};
+        memory.opaque = this;
+        memory.zopen64_file = [](void* zip, const void*, int) { return zip; };
+        memory.zread_file = [](void*, void*, void*, uLong) -> uLong { return 0; };
+        memory.zwrite_file = [](void*, void* stream, const void* from, uLong size) -> uLong {
+            Zip& own = *static_cast<Zip*>(stream);
+            own.bytes_.resize(std::max<std::size_t>(own.bytes_.size(), own.at_ + size));
+            std::copy_n(static_cast<const char*>(from), size, own.bytes_.data() + own.at_);
+            own.at_ += size;
+            return size;
+        };
+        memory.ztell64_file = [](void*, void* stream) -> ZPOS64_T { return static_cast<Zip*>(stream)->at_; };
+        memory.zseek64_file = [](void*, void* stream, ZPOS64_T offset, int origin) -> long {
+            Zip& own = *static_cast<Zip*>(stream);
+            own.at_ = offset
+                      + (origin == ZLIB_FILEFUNC_SEEK_SET   ? 0
+                         : origin == ZLIB_FILEFUNC_SEEK_CUR ? own.at_
+                                                            : own.bytes_.size());
+            return 0;
+        };
+        memory.zclose_file = [](void*, void*) { return 0; };
+        memory.zerror_file = [](void*, void*) { return 0; };
+        archive_ = zipOpen2_64(nullptr, APPEND_STATUS_CREATE, nullptr, &memory);
+        check(archive_ != nullptr);
     }
     ~Zip() {
-        if (archive_ != nullptr) zip_discard(archive_);
-        zip_source_free(source_);
+        if (archive_ != nullptr) zipClose(archive_, nullptr);
     }
     Zip(const Zip&) = delete;
     Zip& operator=(const Zip&) = delete;
 
-    /// bytes: kept until close().
     void add(const std::string& name, const std::string& bytes) {
-        zip_source_t* const file = zip_source_buffer(archive_, bytes.data(), bytes.size(), 0);
-        if (file == nullptr) fail();
-        const zip_int64_t at = zip_file_add(archive_, name.c_str(), file, ZIP_FL_ENC_UTF_8);
-        if (at >= 0) return;
-        zip_source_free(file);
-        fail();
+        constexpr uLong utf8_names = 1u << 11;
+        zip_fileinfo always{}; // the same clashes make the same bytes
+        always.tmz_date.tm_year = 1980;
+        always.tmz_date.tm_mday = 1;
+        check(zipOpenNewFileInZip4_64(archive_, name.c_str(), &always, nullptr, 0, nullptr, 0, nullptr, Z_DEFLATED,
+                                      Z_DEFAULT_COMPRESSION, 0, -MAX_WBITS, DEF_MEM_LEVEL, Z_DEFAULT_STRATEGY, nullptr,
+                                      0, 0, utf8_names, 0)
+              == ZIP_OK);
+        check(zipWriteInFileInZip(archive_, bytes.data(), static_cast<unsigned>(bytes.size())) == ZIP_OK);
+        check(zipCloseFileInZip(archive_) == ZIP_OK);
     }
 
     std::string close() {
-        if (zip_close(archive_) != 0) fail();
-        archive_ = nullptr;
-        zip_stat_t stat;
-        if (zip_source_stat(source_, &stat) != 0 || zip_source_open(source_) != 0)
-            throw std::runtime_error("the BCF file cannot be read back");
-        std::string bytes(stat.size, '\0');
-        const zip_int64_t read = zip_source_read(source_, bytes.data(), bytes.size());
-        zip_source_close(source_);
-        if (read != static_cast<zip_int64_t>(bytes.size()))
-            throw std::runtime_error("the BCF file cannot be read back");
-        return bytes;
+        check(zipClose(std::exchange(archive_, nullptr), nullptr) == ZIP_OK);
+        return std::move(bytes_);
     }
 
 private:
-    [[noreturn]] void fail() {
-        throw std::runtime_error(std::string("the BCF file cannot be made: ") + zip_strerror(archive_));
+    static void check(bool done) {
+        if (!done) throw std::runtime_error("the BCF file cannot be made");
     }
 
-    zip_source_t* source_ = nullptr;
-    zip_t* archive_ = nullptr;
+    std::string bytes_;
+    std::size_t at_ = 0;
+    zipFile archive_ = nullptr;
 };
 
 /// How much the viewer should see: the overlap, or a share of the smaller part.

@@ -23,6 +23,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -63,6 +64,12 @@ struct Options {
         return units[0];
     }
 };
+
+bool ends_in_3mf(const std::string& file) {
+    std::string ending = std::filesystem::path(file).extension().string();
+    std::ranges::transform(ending, ending.begin(), [](unsigned char c) { return std::tolower(c); });
+    return ending == ".3mf";
+}
 
 struct Result {
     std::vector<AssemblyPart> parts;
@@ -124,10 +131,10 @@ std::string note_of(const Clash& c) {
 std::string table(const Result& result, const char* unit) {
     std::string text;
     for (const Clash& c : result.report.clashes) {
-        const std::string depth = c.kind == ClashKind::near ? fmt::format("{} {} apart", c.distance, unit)
-                                  : !c.depth                ? "no depth"
-                                  : *c.depth > 0            ? fmt::format("{} {}", float(*c.depth), unit)
-                                                            : "touching";
+        const std::string depth = c.kind == ClashKind::nearby ? fmt::format("{} {} apart", c.distance, unit)
+                                  : !c.depth                  ? "no depth"
+                                  : *c.depth > 0              ? fmt::format("{} {}", float(*c.depth), unit)
+                                                              : "touching";
         text += fmt::format("{:>12}  {}  x  {}  at {}, {}, {}{}\n", depth, result.parts[c.a].name,
                             result.parts[c.b].name, c.point.x, c.point.y, c.point.z, note_of(c));
     }
@@ -192,6 +199,25 @@ void read_excluded(const std::string& file, ClashOptions& how) {
     if (lines.bad() || !lines.eof()) throw InputError("--exclude " + file + ": cannot be read");
 }
 
+/// Brings parts of 3MF, which says its unit and is read in metres, to the unit of the others, and welds.
+void prepare_parts(std::vector<AssemblyPart>& parts, const Options& options) {
+    const double metres = options.length_unit().metres;
+    std::map<std::shared_ptr<const Mesh>, std::shared_ptr<const Mesh>> made;
+    for (AssemblyPart& part : parts) {
+        const double scale = ends_in_3mf(part.file) ? 1 / metres : 1;
+        if (scale == 1 && !options.weld) continue;
+        auto& own = made[part.mesh];
+        if (!own) {
+            Mesh mesh = *part.mesh;
+            for (Vec3& v : mesh.vertices) v = {scale * v.x, scale * v.y, scale * v.z};
+            own = std::make_shared<const Mesh>(options.weld ? weld_mesh(mesh, *options.weld) : std::move(mesh));
+        }
+        part.mesh = own;
+        Vec3& at = part.pose.translation;
+        at = {scale * at.x, scale * at.y, scale * at.z};
+    }
+}
+
 Result search(const Options& options) {
     ClashOptions how;
     how.against = options.against;
@@ -209,13 +235,7 @@ Result search(const Options& options) {
     std::vector<std::string> left_out;
     result.parts = load_parts({options.files.begin(), options.files.end()}, &left_out);
     for (const std::string& line : left_out) std::cerr << line << '\n';
-    std::map<std::shared_ptr<const Mesh>, std::shared_ptr<const Mesh>> welded;
-    for (AssemblyPart& part : result.parts) {
-        if (!options.weld) break;
-        auto& made = welded[part.mesh];
-        if (!made) made = std::make_shared<const Mesh>(weld_mesh(*part.mesh, *options.weld));
-        part.mesh = made;
-    }
+    if (options.weld || options.length_unit().metres != 1) prepare_parts(result.parts, options);
     if (result.parts.size() < 2)
         throw InputError(
             options.files[0]
@@ -231,7 +251,7 @@ Result search(const Options& options) {
     if (options.ignore_touching)
         result.ignored = std::erase_if(result.report.clashes, [&](const Clash& c) {
             // Depths are float32: a tenth is a little more.
-            return c.kind != ClashKind::near && c.depth && *c.depth <= *options.ignore_touching * (1 + 1e-6);
+            return c.kind != ClashKind::nearby && c.depth && *c.depth <= *options.ignore_touching * (1 + 1e-6);
         });
     return result;
 }
@@ -312,7 +332,10 @@ void add_clash(CLI::App& app) {
     add_length("--tolerance", options->tolerance, "depths and gaps up to this are touching");
     add_length("--ignore-touching", options->ignore_touching,
                "leave out clashes no deeper than this; 0: those that only touch. Those without a depth stay");
-    command->add_option("--unit", options->unit, "of the files, and so of all lengths: m, mm, cm or in")
+    command
+        ->add_option(
+            "--unit", options->unit,
+            "of the files, and so of all lengths: m, mm, cm or in; 3MF says its own and is brought to this one")
         ->type_name("UNIT")
         ->check([](const std::string& word) {
             if (std::ranges::any_of(units, [&](const Unit& unit) { return word == unit.name; })) return std::string();

@@ -5,10 +5,10 @@
 packages_build=(
     g++ cmake ninja-build pkg-config
     libtbb-dev nlohmann-json3-dev libxxhash-dev                        # the library
-    libexpat1-dev libminizip-dev zlib1g-dev                            # its 3MF files; it builds without them
+    libexpat1-dev libminizip-dev zlib1g-dev                            # its 3MF files, without which it builds; BCF
     ocl-icd-opencl-dev opencl-c-headers                                # its OpenCL devices; it builds without them
     libbullet-dev                                                      # the Bullet adapter
-    libcli11-dev libfmt-dev libmeshoptimizer-dev libembree-dev libstb-dev libwebp-dev libzip-dev # the program, its scenes and report
+    libcli11-dev libfmt-dev libmeshoptimizer-dev libembree-dev libstb-dev libwebp-dev # the program, its scenes and report
 )
 packages_core=( # scripts/test core: the library without OpenCL devices, and its own tests
     g++ cmake ninja-build pkg-config libtbb-dev nlohmann-json3-dev libxxhash-dev libexpat1-dev libminizip-dev zlib1g-dev libgtest-dev

@@ -67,7 +67,7 @@ Answer gap_between(const PartPair& pair, const Part& a, const Part& b, const Cla
     clash.point = clash.point_a = gap->point_a;
     clash.point_b = gap->point_b;
     if (gap->distance > options.tolerance) {
-        clash.kind = ClashKind::near;
+        clash.kind = ClashKind::nearby;
         clash.depth = -gap->distance;
         clash.normal = unit(gap->point_b - gap->point_a);
     }
@@ -125,7 +125,7 @@ void set_kind(Answer& answer, const Part& a, const Part& b, const ClashOptions& 
     Clash& clash = *answer.clash;
     clash.open_a = !a.shape->report().closed;
     clash.open_b = !b.shape->report().closed;
-    if (clash.kind == ClashKind::near || clash.distance > 0) return;
+    if (clash.kind == ClashKind::nearby || clash.distance > 0) return;
     const bool solid = a.shape->has_inside() && b.shape->has_inside();
     const auto touch = [&] {
         clash.kind = ClashKind::touching;
@@ -260,7 +260,7 @@ ClashReport find_clashes(std::span<const AssemblyPart> given, const ClashOptions
     check_options(options);
     if (given.size() < 2)
         throw InputError("clash: " + std::to_string(given.size())
-                         + " part given; give several, or a glTF file whose nodes are parts");
+                         + " part given; give several");
     for (const AssemblyPart& part : given) {
         if (!part.mesh) throw InputError("clash: " + part.name + " has no mesh");
         check_pose(part.pose, part.name.c_str());

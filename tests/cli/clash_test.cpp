@@ -2,6 +2,10 @@
 // `clash`: which parts of an assembly intersect, on cubes whose answers are known by hand.
 #include "expect.h"
 
+#ifdef RAYCONTACT_3MF
+#include "tests/unit/mesh/packages.h"
+#endif
+
 #include <cmath>
 #include <cstring>
 #include <fstream>
@@ -338,6 +342,30 @@ TEST_F(Clash, AgainstExcludeAndClearance) {
     EXPECT_NE(text.out.find(" mm apart  wall  x  post  at 2.3"), std::string::npos) << text.out;
     EXPECT_EQ(clashes({"all.gltf", "--unit", "in"})[0]["unit"], "in");
 }
+
+#ifdef RAYCONTACT_3MF
+// A 3MF says its unit, an OBJ does not: the one comes to the unit of the other, and its place with it.
+TEST_F(Clash, PartsOf3mfComeToTheUnitOfTheOthers) {
+    raycontact::Mesh box;
+    for (int i = 0; i < 8; ++i) box.vertices.push_back({i & 1 ? 5.0 : -5.0, i & 2 ? 5.0 : -5.0, i & 4 ? 5.0 : -5.0});
+    box.triangles = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
+                     {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
+    using namespace raycontact::test;
+    folder_.write("b.3MF", zip_of(parts_3mf(model_3mf(object_3mf(box, R"(id="1")"),
+                                                      R"(<item objectid="1" transform="1 0 0 0 1 0 0 0 1 9 0 0"/>)",
+                                                      R"(unit="millimeter")"))));
+    write_cube("a.obj", 0, 10);
+    const auto found = clashes({"a.obj", "b.3MF", "--unit", "mm"});
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_NEAR(found[0]["depth"].get<double>(), 1, 1e-5);
+    EXPECT_NEAR(found[0]["box"][0][0].get<double>(), 4, 1e-5);
+    write_cube("a.obj", 0, 1);
+    const auto in_cm = clashes({"a.obj", "b.3MF", "--unit", "cm"});
+    ASSERT_EQ(in_cm.size(), 1u);
+    EXPECT_NEAR(in_cm[0]["depth"].get<double>(), 0.1, 1e-6);
+    EXPECT_TRUE(clashes({"a.obj", "b.3MF"}).size() == 1) << "in metres the small one lies in the large one";
+}
+#endif
 
 TEST_F(Clash, PartsUnderOtherParts) {
     write_assembly("all.gltf", {{"pump", 0}, {"flange", 0.9}, {"bolt", 0.9}, {"group", 5}});

@@ -10,7 +10,7 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, Union
+from typing import Any, NamedTuple, Union
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -22,9 +22,6 @@ from .mesh import Mesh
 from .recording import Recording
 from .scene import Scene
 from .shape import Shape
-
-if TYPE_CHECKING:
-    pass
 
 _COLOURS = np.array([(196, 84, 40), (40, 106, 170), (206, 158, 48), (60, 140, 72), (132, 78, 156)], np.uint8)
 _GREY = (150, 147, 138)
@@ -128,12 +125,8 @@ def _film_of_recording(recording: Recording, fps: float) -> _Film:
     steps = np.unique(np.floor(times * fps + 1e-3), return_index=True)[1]
     steps = np.union1d(steps, len(times) - 1)
     shapes, shape_of = recording.shapes, recording.shape_of
-    kept = (
-        "direction",
-        "features",
-        "max_contacts_per_pair",
-        "max_contacts",
-    )  # "certified" finds what is there in any step
+    # By "certified", which finds what is there in any step.
+    kept = ("direction", "features", "max_contacts_per_pair", "max_contacts")
     scene = Scene(**{key: recording.settings[key] for key in kept})
     ids = np.array([scene.add(shapes[i]) for i in shape_of], np.int64)
     still, first = np.ones(len(ids), np.bool_), recording[0].poses

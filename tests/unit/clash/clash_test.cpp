@@ -223,7 +223,7 @@ TEST(Clash, ToleranceWorksOnBothSides) {
     }
     EXPECT_EQ(found[1].distance, 0) << "in";
     EXPECT_NEAR(found[2].distance, 0.005, 1e-12) << "off";
-    EXPECT_EQ(found[3].kind, ClashKind::near);
+    EXPECT_EQ(found[3].kind, ClashKind::nearby);
     EXPECT_NEAR(found[3].distance, 0.02, 1e-12);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files as other programs write them: what is read of them, and that what is not read is counted or named.
 #include "tests/unit/mesh/formats.h"
+#include "tests/unit/mesh/load_error.h"
 #include "tests/unit/mesh/solids.h"
 
 #include <raycontact/assembly.h>
@@ -18,15 +19,6 @@ using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 using Texts = std::vector<std::string>;
 
 const std::string three = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
-
-std::string error_of(const std::filesystem::path& file) {
-    try {
-        load_mesh(file);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "loaded";
-}
 
 void expect_error(const std::filesystem::path& file, const std::string& words) {
     EXPECT_NE(error_of(file).find(words), std::string::npos) << error_of(file) << "\nlacks: " << words;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/unit/mesh/formats.h"
+#include "tests/unit/mesh/load_error.h"
 #include "tests/unit/mesh/solids.h"
 
 #include <raycontact/error.h>
@@ -50,15 +51,6 @@ Mesh unwelded(const Mesh& mesh, bool as_float) {
         out.triangles.push_back({base, base + 1, base + 2});
     }
     return out;
-}
-
-std::string error_of(const std::filesystem::path& file) {
-    try {
-        load_mesh(file);
-    } catch (const InputError& error) {
-        return error.what();
-    }
-    return "loaded";
 }
 
 TEST(Load, ObjKeepsIndicesAndEveryBit) {

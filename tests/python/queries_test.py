@@ -1,0 +1,197 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Queries from Python, of one and of many: answers are true, and batches have those of each."""
+
+import helpers
+import meshes
+import numpy as np
+import pytest
+import raycontact as rc
+
+RNG = np.random.default_rng(47)
+
+
+def test_contacts_of_two_boxes_are_where_they_overlap():
+    box = rc.Shape(rc.Mesh(*meshes.box()))
+    contacts = rc.collide(box, box, pose_b=rc.pose([0.9, 0.05, 0.02]))
+    assert len(contacts) and contacts.depth.max() == pytest.approx(0.1, abs=1e-6)
+    deepest = contacts.deepest()
+    assert len(deepest) == 1 and np.allclose(contacts.normal, [1, 0, 0])
+    assert np.allclose(contacts.point_a - contacts.point_b, contacts.depth[:, None] * contacts.normal, atol=1e-6)
+    assert (contacts.pair == 0).all() and len(np.unique(contacts.key)) == len(contacts)
+
+
+def test_a_body_inside_another_is_found():
+    big, small = (rc.Shape(rc.Mesh(*meshes.box(size))) for size in ((4, 4, 4), (1, 1, 1)))
+    assert rc.intersects(big, small) and rc.distance(big, small).distance == 0
+    contacts = rc.collide(big, small)
+    assert len(contacts) and (contacts.depth >= 1.5 - 1e-6).any()
+
+
+def test_many_questions_have_the_answers_of_each(torus, bracket):
+    n = 60
+    pose_a, pose_b = helpers.random_poses(n, 1.2), helpers.random_poses(n, 1.2)
+    shapes = [(torus, bracket)[i % 2] for i in range(n)]
+    hits = rc.intersects(shapes, torus, pose_a, pose_b)
+    far = rc.distance(shapes, torus, pose_a, pose_b)
+    points = rc.common_point(shapes, torus, pose_a, pose_b)
+    found = rc.collide(shapes, torus, pose_a, pose_b)
+    assert 5 < hits.sum() < n - 5, "a test of both answers"
+    for i in range(n):
+        one = (shapes[i], torus, pose_a[i], pose_b[i])
+        assert rc.intersects(*one) == hits[i] == (far.distance[i] == 0) == np.isfinite(points[i]).all()
+        single = rc.distance(*one)
+        assert single.distance == far.distance[i] and np.array_equal(single.point_b, far.point_b[i])
+        assert np.linalg.norm(far.point_a[i] - far.point_b[i]) == pytest.approx(far.distance[i], abs=1e-12)
+        contacts, mine = rc.collide(*one), found[found.pair == i]
+        assert np.array_equal(contacts.key, mine.key) and np.array_equal(contacts.depth, mine.depth)
+        assert np.array_equal(contacts.point_a, mine.point_a)
+        assert bool(len(mine)) == hits[i], "no closed meshes intersect unnoticed"
+
+
+def test_distances_are_those_of_points_on_the_triangles(torus, bracket):
+    """No point of one mesh is nearer to the other than the distance; the witness points lie on the named triangles."""
+    for pose in helpers.random_poses(20, 3):
+        found = rc.distance(torus, bracket, pose_b=pose)
+        if found.distance == 0:
+            continue
+        corners = helpers.placed(bracket.vertices, pose)
+        near = rc.closest_point(torus, corners)
+        assert found.distance <= near.distance.min() + 1e-12
+        mesh_a, mesh_b = meshes.torus(), meshes.bracket()
+        for point, triangle, (vertices, faces), place in (
+            (found.point_a, found.triangle_a, mesh_a, np.eye(4)),
+            (found.point_b, found.triangle_b, mesh_b, pose),
+        ):
+            a, b, c = helpers.placed(vertices[faces[triangle]], place)
+            share = np.linalg.lstsq(np.c_[b - a, c - a], point - a, rcond=None)[0]
+            assert np.allclose(a + share[0] * (b - a) + share[1] * (c - a), point, atol=1e-9)
+            assert (share >= -1e-9).all() and share.sum() <= 1 + 1e-9
+
+
+def test_rays_and_points_of_a_torus(torus):
+    angles = RNG.uniform(0, 2 * np.pi, 200)
+    inside = np.c_[np.cos(angles), np.sin(angles), np.zeros(200)]
+    assert rc.contains(torus, inside * 0.99).all() and not rc.contains(torus, inside * 0.2).any()
+    pose = helpers.random_poses(1, 5)[0]
+    assert rc.contains(torus, helpers.placed(inside * 0.99, pose), pose).all()
+    hit = rc.raycast(torus, [0, 0, 0], inside)
+    assert np.allclose(hit.distance, 0.65, atol=0.02) and (hit.triangle >= 0).all()
+    assert (np.einsum("ij,ij->i", hit.normal, inside) < 0).all(), "it meets the faces from outside"
+    assert rc.raycast_any(torus, [0, 0, 0], inside).all() and not rc.raycast_any(torus, [0, 0, 0], [0, 0, 1])
+    miss = rc.raycast(torus, [0, 0, 0], [0, 0, 1])
+    assert miss.distance == np.inf and miss.triangle == -1 and np.isnan(miss.point).all()
+    assert rc.closest_point(torus, [0, 0, 0], max=0.1).distance == np.inf
+
+
+@pytest.mark.parametrize(
+    ("ask", "says"),
+    [
+        (lambda s: rc.intersects(s, [s, s], pose_b=np.tile(np.eye(4), (3, 1, 1))), "give as many, or one"),
+        (lambda s: rc.intersects([s, None], s), r"a\[1\]"),
+        (lambda s: rc.intersects(s, s, pose_b=np.eye(3)), r"pose_b: has shape \(3, 3\)"),
+        (lambda s: rc.intersects(s, s, pose_b=np.diag([2, 2, 2, 1.0])), "rigid"),
+        (lambda s: rc.intersects(s, s, pose_b=np.diag([-1, 1, 1, 1.0])), "mirrored"),
+        (lambda s: rc.intersects(s, s, pose_b=np.eye(4).T + np.eye(4)[::-1] * 3), "last row"),
+        (lambda s: rc.collide(s, s, pose_b=rc.pose([[0, 0, 0], [np.nan, 0, 0]])), r"pose_b\[1\]"),
+        (lambda s: rc.distance(s, s, max=-1), "max|greatest"),
+        (lambda s: rc.distance(s, s, max="far"), "max"),
+        (lambda s: rc.distance(s, s, threads=-1), "threads"),
+        (lambda s: rc.raycast(s, [0, 0, 0], [0, 0, 0]), "direction"),
+        (lambda s: rc.raycast(s, [[0, 0, 0]] * 2, [[0, 0, 1]] * 3), "give as many, or one"),
+        (lambda s: rc.intersects([s, s], s, np.tile(np.eye(4), (2, 3, 1, 1))), r"a \(2,\), pose_a \(2, 3\) do not fit"),
+        (
+            lambda s: rc.intersects(s, s, np.tile(np.eye(4) * [[1], [1], [np.nan], [1]], (2, 3, 1, 1))),
+            r"pose_a\[0, 0\]",
+        ),
+        (lambda s: rc.contains(s, [[0, 0, 0], [0, np.inf, 0]]), "point 1"),
+        (lambda s: rc.contains(s, "here"), "points"),
+        (lambda s: rc.collide(s, s, direction="sideways"), "sideways"),
+        (lambda s: rc.collide(s, s, devices="abacus"), "abacus"),
+    ],
+)
+def test_bad_questions_are_value_errors_that_say_what_is_wrong(torus, ask, says):
+    with pytest.raises(ValueError, match=says):
+        ask(torus)
+
+
+def test_links_in_many_poses_have_the_answers_of_each(torus, bracket):
+    links, n = [torus, bracket], 7
+    offsets = rc.pose([[0, 0, 0], [0.5, 0, 0.2]])
+    poses = helpers.random_poses(n, 0.9)[:, None] @ offsets
+    hits = rc.intersects(links, torus, poses)
+    assert hits.shape == (n, 2) and hits.any() and not hits.all()
+    apart = rc.distance(links, torus, poses)
+    assert apart.distance.shape == (n, 2) and apart.point_a.shape == (n, 2, 3)
+    contacts = rc.collide(links, torus, poses)
+    touching = np.zeros((n, 2), bool)
+    touching[np.unravel_index(contacts.pair, (n, 2))] = True
+    for i in range(n):
+        for k, link in enumerate(links):
+            assert hits[i, k] == rc.intersects(link, torus, poses[i, k])
+            assert apart.distance[i, k] == rc.distance(link, torus, poses[i, k]).distance
+            assert touching[i, k] == (len(rc.collide(link, torus, poses[i, k])) > 0)
+    points = RNG.uniform(-1, 1, (5, 1, 3))
+    near = rc.closest_point(torus, points, poses[:, 0])
+    assert near.point.shape == (5, n, 3)
+    assert near.distance[3, 2] == rc.closest_point(torus, points[3, 0], poses[2, 0]).distance
+    assert rc.contains(torus, points, poses[:, 0]).shape == (5, n)
+    assert rc.raycast_any(torus, points, [0, 0, 1]).shape == (5, 1)
+    assert rc.intersects(links, torus, np.empty((0, 2, 4, 4))).shape == (0, 2)
+
+
+def test_no_items_have_no_answers(torus):
+    none = np.empty((0, 4, 4))
+    assert len(rc.intersects(torus, torus, pose_b=none)) == 0
+    assert rc.distance(torus, torus, pose_b=none).point_a.shape == (0, 3)
+    assert len(rc.collide(torus, torus, pose_b=none)) == 0
+    assert rc.contains(torus, np.empty((0, 3))).shape == (0,)
+    assert len(rc.Scene().find_contacts()) == 0 and len(rc.Scene().add(torus, none)) == 0
+
+
+def test_a_closest_point_at_the_greatest_distance_counts(torus):
+    points = RNG.normal(size=(3000, 3)) * 3
+    pose = helpers.random_poses(1, 5)[0]
+    far = rc.closest_point(torus, points, pose).distance
+    again = [rc.closest_point(torus, point, pose, max=most).distance for point, most in zip(points, far)]
+    assert np.array_equal(again, far)
+
+
+def test_poses_are_made_and_mended():
+    q = RNG.normal(size=(50, 4))
+    poses = rc.pose_from_quaternion(RNG.normal(size=(50, 3)), q)
+    assert np.allclose(np.einsum("nij,nkj->nik", poses[:, :3, :3], poses[:, :3, :3]), np.eye(3))
+    bent = poses.copy()
+    bent[:, :3, :3] *= 1.02
+    assert np.allclose(rc.nearest_rigid(bent), poses)
+    assert rc.pose([1, 2, 3]).tolist() == [[1, 0, 0, 1], [0, 1, 0, 2], [0, 0, 1, 3], [0, 0, 0, 1]]
+    assert rc.pose(np.zeros((5, 3)), np.eye(3)).shape == (5, 4, 4)
+    for bad in (
+        lambda: rc.pose([1, 2]),
+        lambda: rc.pose(rotation=np.eye(4)),
+        lambda: rc.pose(np.zeros((2, 3)), np.zeros((3, 3, 3))),
+        lambda: rc.pose_from_quaternion([0, 0, 0], [0, 0, 0, 0]),
+        lambda: rc.nearest_rigid(np.diag([1, 1, -1, 1])),
+    ):
+        with pytest.raises(rc.InputError):
+            bad()
+
+
+def test_poses_that_are_no_poses_are_named_as_they_were_given(torus):
+    good = rc.pose(np.zeros((4, 3)))
+    lost, drifted = good.copy(), good.copy()
+    lost[2] = np.nan
+    drifted[3, :3, :3] *= 1.001
+    with pytest.raises(rc.InputError, match=r"pose_b\[2\]: an entry is not a finite number"):
+        rc.distance(torus, torus, pose_b=lost)
+    with pytest.raises(rc.InputError, match=r"pose_a\[3\]: not rigid.*nearest_rigid"):
+        rc.collide(torus, torus, pose_a=drifted)
+    assert (
+        "576 triangles" in repr(torus.report)
+        and "pairs" in repr(rc.Scene().stats)
+        and "cpu" in repr(rc.list_devices()[0])
+    )
+
+
+def test_rotations_of_scipy_are_taken():
+    rotation = pytest.importorskip("scipy.spatial.transform").Rotation.from_euler("z", 90, degrees=True)
+    assert np.allclose(rc.pose([1, 2, 3], rotation), rc.pose_from_quaternion([1, 2, 3], [1, 0, 0, 1]))

@@ -1,0 +1,291 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Scenes, their contacts and recordings from Python."""
+
+import fractions
+import json
+import os
+import subprocess
+
+import helpers
+import meshes
+import numpy as np
+import pytest
+import raycontact as rc
+
+
+def test_a_scene_finds_what_collide_finds(torus, bracket):
+    scene = rc.Scene()
+    poses = helpers.random_poses(12, 2)
+    ids = scene.add([torus, bracket] * 6, poses)
+    contacts = scene.find_contacts()
+    assert len(contacts) and scene.stats.contacts == len(contacts)
+    for a, b in scene.pairs:
+        one = rc.collide(scene.shape(a), scene.shape(b), poses[a], poses[b])
+        mine = contacts[(contacts.bodies == (a, b)).all(axis=1)]
+        assert np.array_equal(one.key, mine.key) and np.array_equal(one.depth, mine.depth)
+    assert np.array_equal(scene.poses(), poses) and np.array_equal(scene.ids, ids)
+    assert helpers.same(scene.find_contacts(scene.pairs[::-1, ::-1]), scene.contacts)
+
+
+def test_contacts_outlive_later_steps_and_the_scene(torus):
+    scene, ids = helpers.ring_scene(torus)
+    first = scene.find_contacts()
+    depth, before = first.depth, {name: column.copy() for name, column in first.columns().items()}
+    for step in range(20):
+        scene.set_poses(ids, rc.pose(np.c_[np.arange(8) * (2.5 - step / 20), np.zeros(8), np.zeros(8)]))
+        scene.find_contacts()
+    assert len(scene.contacts) != len(first)
+    del scene
+    assert all(np.array_equal(column, before[name]) for name, column in first.columns().items())
+    del first
+    assert np.array_equal(depth, before["depth"])
+
+
+def test_ids_name_one_body_for_ever(torus):
+    scene = rc.Scene()
+    one = scene.add(torus)
+    assert isinstance(one, int) and one == 0 and one in scene
+    scene.remove(one)
+    assert one not in scene
+    other = scene.add(torus)
+    assert other != one and other % 2**32 == 0, "the same slot, another generation"
+    for use in (
+        lambda: scene.set_poses([one], np.eye(4)),
+        lambda: scene.poses(one),
+        lambda: scene.remove(one),
+        lambda: scene.find_contacts([[one, other]]),
+        lambda: scene.shape(one),
+        lambda: scene.set_filter(one, 1, 1),
+    ):
+        with pytest.raises(rc.InputError, match="was removed"):
+            use()
+    for wrong in (-1, 5, 2**40, -(2**62)):
+        with pytest.raises(rc.InputError):
+            scene.set_poses(wrong, np.eye(4))
+    with pytest.raises(rc.InputError, match="whole numbers"):
+        scene.set_poses([0.5], np.eye(4))
+
+
+def test_bulk_changes_are_made_as_a_whole_or_not_at_all(torus):
+    scene, ids = helpers.ring_scene(torus)
+    before = scene.poses()
+    poses = before.copy()
+    poses[:, 0, 3] += 1
+    poses[5, 0, 0] = 3
+    with pytest.raises(rc.InputError, match="place 5"):
+        scene.set_poses(ids, poses)
+    with pytest.raises(rc.InputError):
+        scene.add(torus, poses)
+    assert np.array_equal(scene.poses(), before) and len(scene) == 8
+
+
+def test_new_and_lost_contacts(torus):
+    scene, ids = helpers.ring_scene(torus)
+    first = scene.find_contacts()
+    assert first.is_new.all()
+    assert not scene.find_contacts().is_new.any()
+    scene.set_poses(ids[0], rc.pose([-50, 0, 0]))
+    scene.find_contacts()
+    lost = scene.lost_contacts
+    gone = first[(first.bodies == (ids[0], ids[1])).all(axis=1)]
+    assert len(gone) and np.array_equal(np.sort(lost.key[(lost.bodies[:, 0] == ids[0])]), gone.key[gone.kind == 0])
+
+
+def test_settings_come_back(torus):
+    scene = rc.Scene(method="predictive", direction="refined", features="vertices", threads=1, confidence=3)
+    settings = scene.settings
+    assert settings["method"] == "predictive" and settings["confidence"] == 3 and settings["threads"] == 1
+    assert rc.Scene(**settings).settings == settings
+    scene.set_settings(method="standard", displacement_threshold=0.25)
+    assert scene.settings["method"] == "standard" and scene.settings["displacement_threshold"] == 0.25
+    for bad in ({"method": "magic"}, {"threads": 2}, {"confidence": 0}, {"speculative": 1}, {"max_contacts": -1}):
+        with pytest.raises(rc.InputError):
+            scene.set_settings(**bad)
+    with pytest.raises(TypeError, match="colour"):
+        scene.set_settings(colour="red")
+    with pytest.raises(TypeError):
+        rc.Scene(colour="red")
+
+
+@pytest.mark.parametrize("method", ["standard", "certified", "iterative", "predictive"])
+@pytest.mark.parametrize("direction", ["ray", "weighted", "reprojected", "refined"])
+def test_all_methods_and_directions_step(torus, method, direction):
+    scene, ids = helpers.ring_scene(torus, method=method, direction=direction)
+    for step in range(5):
+        scene.set_poses(ids, rc.pose(np.c_[np.arange(8) * (2.5 - step / 100), np.zeros(8), np.zeros(8)]))
+        contacts = scene.find_contacts()
+    assert len(contacts) and (contacts.depth > 0).all()
+    assert (contacts.weight < 1).all() if direction == "weighted" else (contacts.weight == 1).all()
+
+
+def test_all_devices_find_the_same(torus):
+    poses = [helpers.random_poses(8, 2) for _ in range(4)]
+
+    def run(**settings):
+        scene = rc.Scene(**settings)
+        ids = scene.add(torus, poses[0])
+        found = []
+        for pose in poses:
+            scene.set_poses(ids, pose)
+            found.append(scene.find_contacts())
+        return found
+
+    expected = run(threads=1)
+    usable = [d.id for d in rc.list_devices() if d.usable and d.exact]
+    assert "cpu" in usable
+    for devices in [*usable, "cpu/0,cpu/1"]:
+        try:
+            found = run(devices=devices)
+        except rc.InputError as error:
+            if "/" in devices:  # of a machine with one core
+                continue
+            pytest.fail(f"{devices}: {error}")
+        assert all(helpers.same(a, b) for a, b in zip(found, expected)), devices
+
+
+def test_speculative_contacts_come_before_bodies_touch(torus):
+    scene, ids = helpers.ring_scene(torus, speculative=True, speculative_margin=0.2)
+    scene.set_poses(ids, rc.pose(np.c_[np.arange(8) * 2.8, np.zeros(8), np.zeros(8)]))
+    contacts = scene.find_contacts()
+    assert len(contacts) and (contacts.depth <= 0).all() and len(contacts.touching) == 0
+    assert scene.stats.contacts == 0 and scene.stats.contacts_speculative == len(contacts)
+
+
+def test_filters_limits_and_queries_of_a_scene(torus):
+    scene, ids = helpers.ring_scene(torus, max_contacts_per_pair=3)
+    contacts = scene.find_contacts()
+    assert np.unique(contacts.bodies, axis=0, return_counts=True)[1].max() <= 3 and scene.stats.contacts_reduced > 0
+    scene.set_filter(ids, 1, 2)
+    assert len(scene.find_contacts()) == 0
+    hit = scene.raycast([[-9, 1, 0], [0, 99, 0]], [1, 0, 0])
+    assert hit.body.tolist() == [ids[0], -1] and hit.distance[1] == np.inf
+    assert scene.closest_point([40, 0, 0]).body == ids[-1]
+    assert scene.overlaps(torus, rc.pose([1.2, 0, 0])).tolist() == [0, 1]
+
+
+def test_a_recording_is_one_that_the_program_replays(torus, tmp_path):
+    scene, ids = helpers.ring_scene(torus)
+    with rc.Recorder(tmp_path / "rings.glb", scene, dt=0.01, name="rings") as recorder:
+        for step in range(6):
+            scene.set_poses(ids, rc.pose(np.c_[np.arange(8) * (2.5 - step / 50), np.zeros(8), np.zeros(8)]))
+            scene.find_contacts()
+            recorder.record()
+    read = rc.Recording(tmp_path / "rings.glb")
+    assert len(read) == 6 and read.hash == recorder.hash and read.dt == 0.01 and read.name == "rings"
+    assert np.array_equal(read.ids, ids) and read.shape_of.tolist() == [0] * 8 and len(read.shapes) == 1
+    again = rc.Scene(**read.settings)
+    rows = again.add(read.shapes[0], read[0].poses)
+    for step in read:
+        assert step.present.all()
+        again.set_poses(rows, step.poses)
+        again.find_contacts(rows[step.pairs])
+    assert helpers.same(again.contacts, scene.contacts), "to the bit"
+    assert np.array_equal(read[-1].poses, scene.poses()) and np.array_equal(read[-1].pairs, scene.pairs)
+    with pytest.raises(IndexError, match="has 6"):
+        read[6]
+    assert recorder.steps == 6 and recorder.bytes == (tmp_path / "rings.glb").stat().st_size
+    program = os.environ.get("RAYCONTACT_PROGRAM")
+    if not program:
+        pytest.skip("RAYCONTACT_PROGRAM does not name the program")
+    run = subprocess.run([program, "replay", tmp_path / "rings.glb", "--json"], capture_output=True, text=True)
+    assert run.returncode == 0, run.stderr
+    assert json.loads(run.stdout.splitlines()[-1])["hash"] == recorder.hash
+
+
+def test_a_recorder_keeps_its_scene(torus, tmp_path):
+    scene, _ = helpers.ring_scene(torus)
+    recorder = rc.Recorder(tmp_path / "a.glb", scene)
+    scene.find_contacts()
+    del scene
+    recorder.record()
+    recorder.finish()
+    with pytest.raises(rc.InputError, match="nowhere"):
+        rc.Recorder(tmp_path / "nowhere" / "a.glb", rc.Scene())
+    with pytest.raises(rc.InputError, match="time step"):
+        rc.Recorder(tmp_path / "b.glb", rc.Scene(), dt=0)
+
+
+class OnlyDlpack:
+    def __init__(self, array):
+        self.array = array
+
+    def __dlpack__(self, **options):
+        return self.array.__dlpack__(**options)
+
+    def __dlpack_device__(self):
+        return self.array.__dlpack_device__()
+
+
+def test_arrays_go_in_and_out_by_dlpack(torus):
+    scene, ids = helpers.ring_scene(torus)
+    poses = rc.pose(np.c_[np.arange(8) * 2.4, np.zeros(8), np.zeros(8)])
+    scene.set_poses(OnlyDlpack(ids), OnlyDlpack(poses))
+    assert np.array_equal(scene.poses(), poses)
+    contacts = scene.find_contacts()
+    for name in ("point_a", "normal", "depth", "bodies", "indices", "kind"):
+        column = getattr(contacts, name)
+        if np.lib.NumpyVersion(np.__version__) < "2.1.0":
+            assert np.array_equal(np.from_dlpack(column.copy()), column), "older ones export nothing that is read-only"
+            continue
+        other = np.from_dlpack(column)
+        assert np.array_equal(other, column) and np.shares_memory(other, contacts.data)
+
+
+def test_numbers_of_other_types_and_orders_are_taken(torus):
+    scene, ids = helpers.ring_scene(torus)
+    poses = rc.pose(np.c_[np.arange(8) * 2, np.zeros(8), np.zeros(8)])
+    for given in (poses.astype(np.float32), poses.tolist(), np.asfortranarray(poses), poses.astype(int), poses[::1]):
+        scene.set_poses(ids.astype(np.uint8), given)
+        assert np.array_equal(scene.poses(), poses)
+    vertices, faces = meshes.torus()
+    mesh = rc.Mesh(np.asfortranarray(vertices), faces.astype(np.int16)[:, ::-1])
+    assert np.array_equal(mesh.triangles, faces[:, ::-1])
+
+
+def test_columns_are_not_written_by_mistake(torus):
+    scene, _ = helpers.ring_scene(torus)
+    contacts = scene.find_contacts()
+    with pytest.raises(ValueError, match="read-only"):
+        contacts.depth[:] = 7
+    own = contacts.depth.copy()
+    own[:] = 7
+    assert not (scene.contacts.depth == 7).any()
+
+
+def test_slots_index_arrays_of_ones_own(torus):
+    scene, ids = helpers.ring_scene(torus)
+    scene.remove(ids[[0, 2]])
+    scene.find_contacts()
+    new = scene.add(torus, rc.pose([[0.5, 0, 0], [90, 0, 0], [99, 0, 0]]))
+    contacts = scene.find_contacts()
+    assert (new[:2] >= 2**32).all() and scene.slot_count == 9
+    push = np.zeros((scene.slot_count, 3))
+    np.add.at(push, contacts.slots[:, 0], -contacts.normal * contacts.depth[:, None])
+    assert push.any() and rc.Scene().slot_count == 0
+
+
+def test_adding_nothing_or_too_little_is_told(torus):
+    scene = rc.Scene()
+    for shapes, poses in (([], np.zeros((3, 4, 4)) + np.eye(4)), ([torus] * 2, []), ([torus] * 2, [np.eye(4)] * 3)):
+        with pytest.raises(rc.InputError, match="bodies; give one for each"):
+            scene.add(shapes, poses)
+    with pytest.raises(rc.InputError, match=r"poses\[2\]"):
+        scene.add(torus, [np.eye(4), np.eye(4), np.diag([2, 2, 2, 1])])
+    assert scene.add(torus) == 0, "what failed used no ids"
+    assert scene.add([torus, torus], np.eye(4)[None]).tolist() == [1, 2]
+
+
+def test_small_mistakes_are_told(torus, tmp_path):
+    with pytest.raises(rc.InputError, match="speculative=True"):
+        rc.Scene(speculative_margin=0.1)
+    with pytest.raises(rc.InputError, match="1025"):
+        rc.intersects(torus, torus, threads=1025)
+    contacts = rc.collide(torus, torus, pose_b=rc.pose([1, 0, 0]))
+    with pytest.raises(TypeError, match="contacts.depth"):
+        contacts["depth"]
+    assert rc.Shape(rc.Mesh(*meshes.box()), scale=fractions.Fraction(1, 2)).box[1].tolist() == [0.25] * 3
+    scene, _ = helpers.ring_scene(torus)
+    with rc.Recorder(tmp_path / "a.glb", scene) as recorder:
+        scene.find_contacts()
+        recorder.record()
+        recorder.finish()
