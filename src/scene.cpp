@@ -5,6 +5,7 @@
 #include "broadphase/broad_phase.h"
 #include "contacts/predictions.h"
 #include "executor/float_environment.h"
+#include "free_all.h"
 #include "narrow_phase.h"
 #include "next_poses.h"
 #include "pose_fault.h"
@@ -52,6 +53,17 @@ bool may_meet(const BodyNotes& a, const BodyNotes& b) {
 
 bool by_slots(const Pair& p, const Pair& q) {
     return SlotPair(p.first.slot, p.second.slot) < SlotPair(q.first.slot, q.second.slot);
+}
+
+/// Both are sorted.
+bool share_a_pair(std::span<const Pair> p, std::span<const Pair> q) {
+    for (auto at_p = p.begin(), at_q = q.begin(); at_p != p.end() && at_q != q.end();) {
+        if (*at_p == *at_q) return true;
+        const bool before = by_slots(*at_p, *at_q);
+        if (before || !by_slots(*at_q, *at_p)) ++at_p;
+        if (!before) ++at_q;
+    }
+    return false;
 }
 
 } // namespace
@@ -110,10 +122,11 @@ struct Scene::State {
             if (body.shape != nullptr) body.shape->prepare(narrow.settings().execution.threads);
     }
 
-    // Once a shape meets others in a second step, more steps are likely to come. Without memory or threads for it, they
-    // come without.
+    // Once a shape meets others in a second step, more steps are likely to come; not so where no pair is there again,
+    // as in a search of pairs that are asked about once. Without memory or threads for it, they come without.
     void want_shapes() {
         if (narrow.parts().plain_shapes() == 0) return met_shapes.clear();
+        if (steps_met > 0 && pairs_changed && !share_a_pair(last_pairs, pairs)) return;
         ++steps_met;
         try {
             for (const SlotPair& pair : slot_pairs)
@@ -160,6 +173,7 @@ struct Scene::State {
         if (slots.count() < bodies.size())
             std::erase_if(boxes, [&](const WorldBox& box) { return bodies[box.body].shape == nullptr; });
         pairs_stand = false;
+        keep_pairs();
         broad_phase.find(narrow.parts().executor(), boxes, slot_pairs);
         std::erase_if(slot_pairs,
                       [&](const SlotPair& pair) { return !may_meet(notes[pair.first], notes[pair.second]); });
@@ -183,7 +197,10 @@ struct Scene::State {
         if (same && pairs_stand) return; // an earlier step has checked them
         for (const Pair& pair : given) check_pair(pair, static_cast<std::size_t>(&pair - given.data()));
         pairs_stand = pairs_found = false;
-        if (!same) pairs.assign(given.begin(), given.end()); // given may be this very list
+        if (!same) {
+            keep_pairs();
+            pairs.assign(given.begin(), given.end()); // given may be this very list
+        }
         for (Pair& pair : pairs)
             if (pair.first.slot > pair.second.slot) std::swap(pair.first, pair.second);
         if (!std::is_sorted(pairs.begin(), pairs.end(), by_slots)) std::sort(pairs.begin(), pairs.end(), by_slots);
@@ -191,6 +208,12 @@ struct Scene::State {
         slot_pairs.clear();
         for (const auto& [a, b] : pairs) slot_pairs.emplace_back(a.slot, b.slot);
         pairs_stand = true;
+    }
+
+    /// Before they become others.
+    void keep_pairs() {
+        last_pairs.swap(pairs);
+        pairs_changed = true;
     }
 
     /// A step that has begun and throws has no contacts.
@@ -220,6 +243,7 @@ struct Scene::State {
         if (!next.empty()) next_poses.step_done(bodies);
         slots.step_done();
         want_shapes();
+        pairs_changed = false;
         cut_to_slots();
         if (narrow.trimmed()) trim();
     }
@@ -228,6 +252,7 @@ struct Scene::State {
         boxes.shrink_to_fit();
         broad_phase.trim();
         pairs.shrink_to_fit();
+        free_all(last_pairs);
         slot_pairs.shrink_to_fit();
     }
 
@@ -249,13 +274,14 @@ struct Scene::State {
     std::span<const Pose> next; ///< of this step; empty without speculative contacts
     std::vector<WorldBox> boxes;
     BroadPhase broad_phase;
-    std::vector<Pair> pairs;
-    std::vector<SlotPair> slot_pairs; ///< the same pairs, by slot
+    std::vector<Pair> pairs, last_pairs; ///< last_pairs: of the last step whose pairs were others
+    std::vector<SlotPair> slot_pairs;    ///< `pairs` by slot
     std::shared_ptr<std::vector<Contact>> contacts = std::make_shared<std::vector<Contact>>();
     StepStats stats;
     static constexpr std::uint64_t wanted = std::numeric_limits<std::uint64_t>::max();
     std::unordered_map<const Shape*, std::uint64_t> met_shapes; ///< those not prepared: the step that first met them
     std::uint64_t steps_met = 0;
+    bool pairs_changed = false; ///< since the last step
     bool pairs_stand = false; ///< both lists are whole, and no body has been removed since
     bool pairs_found = false; ///< they are those of `boxes`, by the filters as they are
     Preparer preparer;        ///< last: it ends first

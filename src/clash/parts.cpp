@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <exception>
 #include <map>
 #include <mutex>
 #include <set>
@@ -18,6 +19,13 @@
 namespace raycontact {
 
 namespace {
+
+/// What a file has. Files are loaded side by side; the first in their order that cannot be loaded is the one named.
+struct Loaded {
+    std::vector<AssemblyPart> parts;
+    std::vector<std::string> left_out;
+    std::exception_ptr fault;
+};
 
 /// Names that several files have get the file before them, then names that several parts have a number.
 void tell_apart(std::vector<AssemblyPart>& parts) {
@@ -45,16 +53,26 @@ void tell_apart(std::vector<AssemblyPart>& parts) {
 
 std::vector<AssemblyPart> load_parts(const std::vector<std::filesystem::path>& files,
                                      std::vector<std::string>* left_out) {
+    std::vector<Loaded> loaded(files.size());
+    Executor executor(files.size() < 2 ? 1 : 0);
+    executor.each(files.size(), 1, [&](std::uint32_t i) {
+        try {
+            loaded[i].parts = load_assembly(files[i], &loaded[i].left_out);
+        } catch (...) {
+            loaded[i].fault = std::current_exception();
+        }
+    });
     std::vector<AssemblyPart> parts;
-    for (const std::filesystem::path& file : files) {
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        if (loaded[i].fault) std::rethrow_exception(loaded[i].fault);
         const std::size_t first = parts.size();
-        std::vector<std::string> of_file;
-        for (AssemblyPart& part : load_assembly(file, &of_file)) {
+        for (AssemblyPart& part : loaded[i].parts) {
             if (part.parent != AssemblyPart::no_part) part.parent += first;
             parts.push_back(std::move(part));
         }
         if (left_out != nullptr)
-            for (const std::string& words : of_file) left_out->push_back(printable(file.string()) + ": " + words);
+            for (const std::string& words : loaded[i].left_out)
+                left_out->push_back(printable(files[i].string()) + ": " + words);
     }
     tell_apart(parts);
     return parts;

@@ -74,14 +74,19 @@ auto before(int axis) {
     };
 }
 
-// Splits at the middle of the longest axis, at a multiple of a block: good enough if a sweep would cost too much.
-std::size_t split_longest(std::span<Item> items) {
+// Splits at the middle of the longest axis, at a multiple of a block: good enough if a sweep would cost too much. Adds
+// the items to the box.
+std::size_t split_longest(std::span<Item> items, ItemBox& box) {
+    ItemBox centres;
+    for (const Item& item : items) {
+        box.add(item.box);
+        centres.add({item.centre, item.centre});
+    }
     int longest = 0;
     float size = -infinite;
     for (int axis = 0; axis < 3; ++axis) {
-        const auto [low, high] = std::minmax_element(items.begin(), items.end(), before(axis));
-        if (high->centre[axis] - low->centre[axis] <= size) continue;
-        size = high->centre[axis] - low->centre[axis];
+        if (centres.high[axis] - centres.low[axis] <= size) continue;
+        size = centres.high[axis] - centres.low[axis];
         longest = axis;
     }
     const std::size_t left = block_size * (blocks_of(items.size()) / 2);
@@ -249,8 +254,7 @@ private:
         auto parts = divide(
             executor_, Part{0, 0, items.size(), {}}, [&](const Part& p) { return p.last - p.first > sweep_at_most; },
             [&](Part& p) {
-                for (const Item& item : items_of(p)) p.box.add(item.box);
-                const std::size_t middle = p.first + split_longest(items_of(p));
+                const std::size_t middle = p.first + split_longest(items_of(p), p.box);
                 return std::array{Part{0, p.first, middle, {}}, Part{0, middle, p.last, {}}};
             },
             [&](const Part& p, std::array<Part, 2>& halves) {
