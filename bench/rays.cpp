@@ -119,7 +119,7 @@ private:
         device_.cast_ms = 0;
         return milliseconds([&] { standard_.cast(update(), batch_); });
     }
-    Update update() { return {device_, executor_, store_, bodies_, pairs_, motion_, settings_}; }
+    Update update() { return {device_, executor_, store_, bodies_, moved_, pairs_, motion_, settings_}; }
 
     template <typename T>
     std::vector<T> read(const Array<T>& array, std::size_t count) {
@@ -137,6 +137,7 @@ private:
     ShapeStore store_;
     std::span<const PlacedBody> bodies_;
     std::span<const SlotPair> pairs_;
+    MovedBodies moved_;
     Motion motion_;
     Settings settings_;
     StandardRays standard_;

@@ -38,7 +38,7 @@ void NarrowPhase::set_settings(const Settings& settings) {
     parts_.forget();
 }
 
-void NarrowPhase::step(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
+void NarrowPhase::step(std::span<const PlacedBody> bodies, const MovedBodies& moved, std::span<const SlotPair> pairs,
                        std::vector<Contact>& contacts, StepStats& stats) {
     const auto start = Clock::now();
     std::vector<DeviceWork> work = std::move(stats.details.work); // to reuse its memory
@@ -53,7 +53,7 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, std::span<const SlotP
         }
         const bool alone = parts_.left() == 1;
         auto failed =
-            parts_.run([&](std::size_t part) { find(part, bodies, alone ? contacts : found_[part].contacts); });
+            parts_.run([&](std::size_t part) { find(part, bodies, moved, alone ? contacts : found_[part].contacts); });
         while (!failed.empty()) failed = replace(failed, stats);
         if (!alone) merge(contacts);
         reducer_.run(parts_.executor(), settings_, bodies, changes_, contacts);
@@ -84,6 +84,19 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, std::span<const SlotP
     stats.narrow_ms = milliseconds_since(start);
 }
 
+void NarrowPhase::rest(StepStats& stats) {
+    const auto start = Clock::now();
+    changes_.rest();
+    stats.contacts_new = stats.contacts_lost = stats.devices_lost = 0;
+    stats.warnings.clear();
+    StepDetails& details = stats.details;
+    details = {.ray_length = details.ray_length,
+               .contacts_merged = details.contacts_merged,
+               .work = std::move(details.work)};
+    for (DeviceWork& work : details.work) work = {.device = std::move(work.device), .pairs = work.pairs};
+    stats.narrow_ms = milliseconds_since(start);
+}
+
 // Once much less is kept for pairs than was, what a step makes anew is freed as well. The allocator keeps what was
 // freed in small pieces: it goes back to the system, and again after the next step, which frees the lists of what was
 // lost.
@@ -106,11 +119,12 @@ void NarrowPhase::trim(std::uint64_t pair_bytes, std::vector<Contact>& contacts)
     platform::trim_heap();
 }
 
-void NarrowPhase::find(std::size_t number, std::span<const PlacedBody> bodies, std::vector<Contact>& contacts) {
+void NarrowPhase::find(std::size_t number, std::span<const PlacedBody> bodies, const MovedBodies& moved,
+                       std::vector<Contact>& contacts) {
     const auto start = Clock::now();
     Part& part = parts_[number];
     const Pin pin(part.executor().core());
-    part.begin(bodies, assignment_.pairs_of(number), settings_);
+    part.begin(bodies, moved, assignment_.pairs_of(number), settings_);
     part.end(contacts);
     found_[number].ms = milliseconds_since(start);
 }

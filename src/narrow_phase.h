@@ -22,8 +22,10 @@ public:
     void set_settings(const Settings& settings);
 
     /// pairs: sorted, without duplicates, indices into bodies. Fills contacts and all of stats but broad_ms.
-    void step(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs, std::vector<Contact>& contacts,
-              StepStats& stats);
+    void step(std::span<const PlacedBody> bodies, const MovedBodies& moved, std::span<const SlotPair> pairs,
+              std::vector<Contact>& contacts, StepStats& stats);
+    /// A step in which nothing has moved since the last, for a method that then finds what it found: contacts stay.
+    void rest(StepStats& stats);
     /// The rays that the methods keep for the next step, in any order; bodies as in the last step.
     std::vector<KeptRay> kept_rays(std::span<const PlacedBody> bodies);
     /// Whether the last step freed memory, since much less of it is in use than was.
@@ -39,7 +41,8 @@ private:
         double ms = 0;
     };
     bool move_pairs(const Balance::Move& move, std::span<const PlacedBody> bodies, StepStats& stats);
-    void find(std::size_t part, std::span<const PlacedBody> bodies, std::vector<Contact>& contacts);
+    void find(std::size_t part, std::span<const PlacedBody> bodies, const MovedBodies& moved,
+              std::vector<Contact>& contacts);
     std::vector<std::size_t> replace(const std::vector<std::size_t>& failed, StepStats& stats);
     std::vector<std::vector<SlotPair>> give_away(const std::vector<std::size_t>& failed, StepStats& stats);
     void merge(std::vector<Contact>& contacts);

@@ -34,26 +34,33 @@ void NextPoses::set(BodySlot body, std::uint32_t generation, const Pose& pose) {
     given_[body] = {pose, generation, true};
 }
 
-std::span<const Pose> NextPoses::update(std::span<const PlacedBody> bodies) {
+std::span<const Pose> NextPoses::update(Executor& executor, std::span<const PlacedBody> bodies, MovedBodies& moved) {
     given_.resize(bodies.size());
     last_.resize(bodies.size());
     next_.resize(bodies.size());
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
+    changed_.resize(bodies.size());
+    executor.each(bodies.size(), 512, [&](BodySlot i) {
         const PlacedBody& body = bodies[i];
-        if (body.shape == nullptr) continue;
+        changed_[i] = 0;
+        if (body.shape == nullptr) return;
+        Pose next = body.pose;
         if (given_[i].is_of(body))
-            next_[i] = given_[i].pose;
-        else
-            next_[i] = goes_on(last_[i], body) ? go_on(last_[i].pose, body.pose) : body.pose;
-    }
+            next = given_[i].pose;
+        else if (goes_on(last_[i], body))
+            next = go_on(last_[i].pose, body.pose);
+        changed_[i] = !same_bits(next, next_[i]);
+        next_[i] = next;
+    });
+    for (BodySlot i = 0; i < bodies.size(); ++i)
+        if (changed_[i] != 0) moved.mark(i);
     return next_;
 }
 
-void NextPoses::step_done(std::span<const PlacedBody> bodies) {
-    for (std::size_t i = 0; i < bodies.size(); ++i) {
+void NextPoses::step_done(Executor& executor, std::span<const PlacedBody> bodies) {
+    executor.each(bodies.size(), 1024, [&](BodySlot i) {
         given_[i].there = false;
         last_[i] = {bodies[i].pose, bodies[i].generation, bodies[i].shape != nullptr};
-    }
+    });
 }
 
 void NextPoses::forget() {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "moved_bodies.h"
 #include "pairs/directed_pairs.h"
 
 #include <span>
@@ -14,10 +15,11 @@ class NextPoses {
 public:
     /// Holds for one step.
     void set(BodySlot body, std::uint32_t generation, const Pose& pose);
-    /// First in a step. Of the body frames, by slot; those of slots without a body mean nothing.
-    std::span<const Pose> update(std::span<const PlacedBody> bodies);
+    /// First in a step. Of the body frames, by slot; those of slots without a body mean nothing. Marks the bodies that
+    /// are expected elsewhere than at the last step.
+    std::span<const Pose> update(Executor& executor, std::span<const PlacedBody> bodies, MovedBodies& moved);
     /// Last in a step.
-    void step_done(std::span<const PlacedBody> bodies);
+    void step_done(Executor& executor, std::span<const PlacedBody> bodies);
     void forget();
 
 private:
@@ -31,6 +33,7 @@ private:
 
     std::vector<Known> given_, last_;
     std::vector<Pose> next_;
+    std::vector<char> changed_; ///< by slot: next_ has, in this step
 };
 
 } // namespace raycontact

@@ -6,6 +6,7 @@
 #include "contacts/predictions.h"
 #include "executor/float_environment.h"
 #include "free_all.h"
+#include "moved_bodies.h"
 #include "narrow_phase.h"
 #include "next_poses.h"
 #include "pose_fault.h"
@@ -39,16 +40,6 @@ void refuse_faulty(const Pose& pose, BodyId body) {
 // Their walks begin where a full test found something, and what a test finds depends on the grids.
 bool follows_rays(Method method) {
     return method == Method::iterative || method == Method::predictive;
-}
-
-/// What users say of a body.
-struct BodyNotes {
-    std::uint64_t user_data = 0;
-    std::uint32_t groups = 1, mask = 0xffffffffu;
-};
-
-bool may_meet(const BodyNotes& a, const BodyNotes& b) {
-    return (a.groups & b.mask) != 0 && (b.groups & a.mask) != 0;
 }
 
 bool by_slots(const Pair& p, const Pair& q) {
@@ -88,6 +79,12 @@ struct Scene::State {
         throw InputError(text + "; forget its id, or add it again and use the id that add() gives");
     }
 
+    void set_pose(PlacedBody& body, BodySlot slot, const Pose& pose) {
+        if (same_bits(body.pose, pose)) return;
+        body.pose = pose;
+        moved.mark(slot);
+    }
+
     /// Wakes the threads, which sleep between steps; for few pairs one thread is enough.
     void call_threads(std::size_t pair_count) {
         if (pair_count > 256) narrow.parts().wake();
@@ -97,12 +94,13 @@ struct Scene::State {
         if (!narrow.parts().pack_shapes()) return;
         for (PlacedBody& body : bodies)
             if (body.shape != nullptr) body.shape_index = narrow.parts().index_of(body.shape);
+        moved.forget(); // whatever is kept of a body names its shape by that
     }
 
     void place_bodies() {
         pack_shapes();
         accelerate_shapes();
-        narrow.parts().executor().each(bodies.size(), 1024, [&](BodySlot i) {
+        moved.each_since(placed, narrow.parts().executor(), bodies.size(), [&](BodySlot i) {
             PlacedBody& body = bodies[i];
             if (body.shape == nullptr) return;
             body.centred = centred_pose(*body.shape, body.pose);
@@ -143,43 +141,77 @@ struct Scene::State {
         first = wanted;
     }
 
-    void find_pairs() {
-        // How far beyond the box of an open mesh a vertex can lie and still reach it: the longest ray of this scene.
-        float reach = 0;
+    // How far beyond the box of an open mesh a vertex can lie and still reach it: the longest ray of this scene.
+    void measure_reach() {
+        float longest = 0;
         for (const PlacedBody& body : bodies)
-            if (body.shape != nullptr) reach = std::max(reach, body.shape->data().header.ray_reach);
-        std::atomic<bool> same = pairs_stand && pairs_found && boxes.size() == bodies.size();
-        boxes.resize(bodies.size());
-        narrow.parts().executor().each(bodies.size(), 256, [&](BodySlot i) {
-            if (bodies[i].shape == nullptr) {
-                boxes[i] = {{}, i};
-                return;
-            }
-            const Shape& shape = *bodies[i].shape;
-            const bool open = !shape.has_inside();
-            // What two boxes are wider by is at least the margin of their pair.
-            const double share = bodies[i].margin >= 0 ? 1 : 0.5;
-            const double near = next.empty() ? 0 : share * speculative_margin(narrow.settings(), bodies[i], bodies[i]);
-            const auto box_at = [&](const Pose& pose) {
-                return world_box({shape.box_min(), shape.box_max()}, pose, (open ? double(reach) : 0) + near);
-            };
-            WorldBox box{box_at(bodies[i].pose), i};
-            if (!next.empty()) box.add(box_at(next[i]));
-            if (box == boxes[i]) return;
-            boxes[i] = box;
-            same.store(false, std::memory_order_relaxed);
-        });
-        if (same) return; // so the pairs are those of the last step
-        if (slots.count() < bodies.size())
-            std::erase_if(boxes, [&](const WorldBox& box) { return bodies[box.body].shape == nullptr; });
+            if (body.shape != nullptr) longest = std::max(longest, body.shape->data().header.ray_reach);
+        if (longest != reach) boxed = 0;
+        reach = longest;
+        reach_known = true;
+    }
+
+    Box box_of(BodySlot slot) const {
+        if (slot >= bodies.size() || bodies[slot].shape == nullptr) return no_box;
+        const PlacedBody& body = bodies[slot];
+        const Shape& shape = *body.shape;
+        const bool open = !shape.has_inside();
+        // What two boxes are wider by is at least the margin of their pair.
+        const double share = body.margin >= 0 ? 1 : 0.5;
+        const double near = next.empty() ? 0 : share * speculative_margin(narrow.settings(), body, body);
+        const auto box_at = [&](const Pose& pose) {
+            return world_box({shape.box_min(), shape.box_max()}, pose, (open ? double(reach) : 0) + near);
+        };
+        Box box = box_at(body.pose);
+        if (!next.empty()) box.add(box_at(next[slot]));
+        return box;
+    }
+
+    /// Lists the bodies whose boxes are others than at the last step.
+    void make_boxes() {
+        if (!reach_known) measure_reach();
+        // With room for bodies to come, which the broad phase takes as boxes that change.
+        if (boxes.size() < bodies.size() || boxes.size() > 4 * bodies.size() + 1024)
+            boxes.resize(bodies.size() + bodies.size() / 8, no_box);
+        is_changed.resize(boxes.size());
+        const auto make = [&](BodySlot slot) {
+            const Box box = box_of(slot);
+            is_changed[slot] = box.low != boxes[slot].low || box.high != boxes[slot].high;
+            boxes[slot] = box;
+        };
+        changed.clear();
+        const auto list = [&](BodySlot slot) {
+            if (is_changed[slot] != 0) changed.push_back(slot);
+        };
+        if (moved.each_since(boxed, narrow.parts().executor(), boxes.size(), make)) {
+            for (BodySlot slot = 0; slot < boxes.size(); ++slot) list(slot);
+        } else {
+            for (const BodySlot slot : moved.list())
+                if (slot < boxes.size()) list(slot);
+        }
+    }
+
+    void find_pairs() {
+        make_boxes();
+        Executor& executor = narrow.parts().executor();
+        const BroadPhaseInput input{boxes, filters};
+        const bool stood = std::exchange(pairs_found, false);
+        if (stood) {
+            if (broad_phase.update(executor, input, changed, slot_pairs)) name_pairs();
+        } else {
+            broad_phase.find(executor, input, slot_pairs);
+            name_pairs();
+        }
+        pairs_stand = pairs_found = true;
+    }
+
+    void name_pairs() {
         pairs_stand = false;
         keep_pairs();
-        broad_phase.find(narrow.parts().executor(), boxes, slot_pairs);
-        std::erase_if(slot_pairs,
-                      [&](const SlotPair& pair) { return !may_meet(notes[pair.first], notes[pair.second]); });
-        pairs.clear();
-        for (const auto& [a, b] : slot_pairs) pairs.emplace_back(slots.id_in(a), slots.id_in(b));
-        pairs_stand = pairs_found = true;
+        pairs.resize(slot_pairs.size());
+        narrow.parts().executor().each(pairs.size(), 4096, [&](std::uint32_t i) {
+            pairs[i] = {slots.id_in(slot_pairs[i].first), slots.id_in(slot_pairs[i].second)};
+        });
     }
 
     void check_pair(const Pair& pair, std::size_t i) const {
@@ -217,15 +249,23 @@ struct Scene::State {
     }
 
     /// A step that has begun and throws has no contacts.
-    template <typename Work>
-    void all_or_nothing(Work&& work) {
-        if (contacts.use_count() > 1)
-            contacts = std::make_shared<std::vector<Contact>>(); // somebody holds the last ones
-        std::atomic_thread_fence(std::memory_order_acquire);     // after what another thread read before it let go
+    template <typename FindPairs>
+    void all_or_nothing(FindPairs&& find_pairs) {
+        // Somebody may hold the last contacts.
+        const auto own = contacts.use_count() > 1 ? std::make_shared<std::vector<Contact>>() : contacts;
+        std::atomic_thread_fence(std::memory_order_acquire); // after what another thread read before it let go
         try {
-            work();
+            look_ahead();
+            const double broad_ms = find_pairs();
+            if (rests()) return rest(broad_ms, own != contacts);
+            contacts = own;
+            call_threads(slot_pairs.size());
+            find_contacts(broad_ms);
         } catch (...) {
             narrow.parts().forget(); // slots may get other bodies before the next step
+            moved.forget();
+            pairs_found = false;
+            contacts = own;
             contacts->clear();
             throw;
         }
@@ -233,15 +273,39 @@ struct Scene::State {
 
     /// Before the broad phase.
     void look_ahead() {
-        next = narrow.settings().is_speculative() ? next_poses.update(bodies) : std::span<const Pose>();
+        next = narrow.settings().is_speculative() ? next_poses.update(narrow.parts().executor(), bodies, moved)
+                                                  : std::span<const Pose>();
+    }
+
+    void end_step() {
+        if (!next.empty()) next_poses.step_done(narrow.parts().executor(), bodies);
+        slots.step_done();
+        stepped = moved.step_done();
+    }
+
+    /// Where nothing has changed since the last step, a method whose contacts follow from the poses finds what it found.
+    bool rests() const {
+        return moved.is_next(stepped) && moved.list().empty() && !pairs_changed
+               && !follows_rays(narrow.settings().method);
+    }
+
+    /// is_held: the contacts are, by somebody else.
+    void rest(double broad_ms, bool is_held) {
+        if (some_new && is_held) contacts = std::make_shared<std::vector<Contact>>(*contacts);
+        if (some_new)
+            for (Contact& contact : *contacts) contact.is_new = false;
+        some_new = false;
+        narrow.rest(stats);
+        stats.broad_ms = broad_ms;
+        end_step();
     }
 
     void find_contacts(double broad_ms) {
         place_bodies();
-        narrow.step(bodies, slot_pairs, *contacts, stats);
+        narrow.step(bodies, moved, slot_pairs, *contacts, stats);
         stats.broad_ms = broad_ms;
-        if (!next.empty()) next_poses.step_done(bodies);
-        slots.step_done();
+        end_step();
+        some_new = true;
         want_shapes();
         pairs_changed = false;
         cut_to_slots();
@@ -260,19 +324,30 @@ struct Scene::State {
     void cut_to_slots() {
         if (slots.end() >= bodies.size()) return;
         bodies.resize(slots.end());
-        notes.resize(slots.end());
+        user_data.resize(slots.end());
+        filters.resize(slots.end());
         if (bodies.capacity() <= 4 * bodies.size() + 1024) return;
         bodies.shrink_to_fit();
-        notes.shrink_to_fit();
+        user_data.shrink_to_fit();
+        filters.shrink_to_fit();
     }
 
     NarrowPhase narrow;
     BodySlots slots;
-    std::vector<PlacedBody> bodies; ///< by slot; without a shape once removed
-    std::vector<BodyNotes> notes;   ///< by slot
+    std::vector<PlacedBody> bodies;               ///< by slot; without a shape once removed
+    std::vector<std::uint64_t> user_data;         ///< by slot
+    std::vector<BroadPhaseInput::Filter> filters; ///< by slot
+    MovedBodies moved;
+    MovedBodies::Seen stepped = 0; ///< the last step that found contacts
+    bool some_new = false;         ///< contacts may say so
+    MovedBodies::Seen placed = 0, boxed = 0; ///< what place_bodies() and make_boxes() have seen
     NextPoses next_poses;
     std::span<const Pose> next; ///< of this step; empty without speculative contacts
-    std::vector<WorldBox> boxes;
+    float reach = 0;            ///< metres
+    bool reach_known = true;
+    std::vector<Box> boxes;        ///< by slot
+    std::vector<char> is_changed;  ///< by slot
+    std::vector<BodySlot> changed; ///< since the last step that found pairs
     BroadPhase broad_phase;
     std::vector<Pair> pairs, last_pairs; ///< last_pairs: of the last step whose pairs were others
     std::vector<SlotPair> slot_pairs;    ///< `pairs` by slot
@@ -282,9 +357,9 @@ struct Scene::State {
     std::unordered_map<const Shape*, std::uint64_t> met_shapes; ///< those not prepared: the step that first met them
     std::uint64_t steps_met = 0;
     bool pairs_changed = false; ///< since the last step
-    bool pairs_stand = false; ///< both lists are whole, and no body has been removed since
-    bool pairs_found = false; ///< they are those of `boxes`, by the filters as they are
-    Preparer preparer;        ///< last: it ends first
+    bool pairs_stand = false;   ///< both lists are whole, and no body has been removed since
+    bool pairs_found = false;   ///< they are those of `boxes`, by the filters as they are
+    Preparer preparer;          ///< last: it ends first
 };
 
 Scene::Scene(const Settings& settings) {
@@ -303,11 +378,16 @@ BodyId Scene::add(std::shared_ptr<const Shape> shape, const Pose& pose) {
     // Room first: an add that fails then leaves no more than unused slots.
     if (slot >= s.bodies.size()) {
         s.bodies.resize(slot + std::size_t{1});
-        s.notes.resize(slot + std::size_t{1});
+        s.user_data.resize(slot + std::size_t{1});
+        s.filters.resize(slot + std::size_t{1});
     }
+    s.moved.make_room(slot + std::size_t{1});
     s.pack_shapes(); // without a step in between they would pile up
     s.narrow.parts().add_shape(shape);
-    s.notes[slot] = {};
+    s.user_data[slot] = 0;
+    s.filters[slot] = {};
+    s.reach_known = s.reach_known && shape->data().header.ray_reach <= s.reach;
+    s.moved.mark(slot);
     s.bodies[slot] = {shape.get(), s.narrow.parts().index_of(shape.get()), id.generation, pose, pose, pose};
     return s.slots.give();
 }
@@ -317,7 +397,9 @@ void Scene::remove(BodyId body) {
     PlacedBody& gone = s.existing(body, "Scene::remove");
     s.narrow.parts().remove_shape(gone.shape);
     s.met_shapes.erase(gone.shape); // its address may be another's soon
+    s.reach_known = s.reach_known && gone.shape->data().header.ray_reach < s.reach;
     gone.shape = nullptr;
+    s.moved.mark(body.slot);
     s.pairs_stand = false;
     s.slots.take_back(body.slot);
     s.cut_to_slots();
@@ -331,7 +413,7 @@ void Scene::remove(BodyId body) {
 void Scene::set_pose(BodyId body, const Pose& pose) {
     PlacedBody& moved = state_->existing(body, "Scene::set_pose");
     refuse_faulty(pose, body);
-    moved.pose = pose;
+    state_->set_pose(moved, body.slot, pose);
 }
 
 void Scene::set_poses(std::span<const BodyId> bodies, std::span<const Pose> poses) {
@@ -345,7 +427,8 @@ void Scene::set_poses(std::span<const BodyId> bodies, std::span<const Pose> pose
         state_->existing(bodies[i], place.c_str());
         throw InputError(place + ": " + name_of(bodies[i]) + ": " + fault);
     }
-    for (std::size_t i = 0; i < bodies.size(); ++i) state_->bodies[bodies[i].slot].pose = poses[i];
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+        state_->set_pose(state_->bodies[bodies[i].slot], bodies[i].slot, poses[i]);
 }
 
 const Pose& Scene::pose(BodyId body) const {
@@ -367,6 +450,7 @@ void Scene::set_speculative_margin(BodyId body, std::optional<double> margin) {
     }
     if (own.margin == margin.value_or(-1)) return;
     own.margin = margin.value_or(-1);
+    state_->moved.mark(body.slot);
     state_->narrow.parts().forget(); // what is kept was sought by the old one
 }
 void Scene::set_settings(const Settings& settings) {
@@ -375,6 +459,7 @@ void Scene::set_settings(const Settings& settings) {
         throw InputError("devices, schedule and threads are fixed when a scene is made; make another scene for others");
     state_->narrow.set_settings(settings);
     if (!settings.is_speculative()) state_->next_poses.forget();
+    state_->moved.forget();
 }
 const Settings& Scene::settings() const noexcept {
     return state_->narrow.settings();
@@ -385,16 +470,15 @@ const Shape& Scene::shape(BodyId body) const {
 
 void Scene::set_user_data(BodyId body, std::uint64_t data) {
     state_->existing(body, "Scene::set_user_data");
-    state_->notes[body.slot].user_data = data;
+    state_->user_data[body.slot] = data;
 }
 std::uint64_t Scene::user_data(BodyId body) const {
     state_->existing(body, "Scene::user_data");
-    return state_->notes[body.slot].user_data;
+    return state_->user_data[body.slot];
 }
 void Scene::set_filter(BodyId body, std::uint32_t groups, std::uint32_t mask) {
     state_->existing(body, "Scene::set_filter");
-    state_->notes[body.slot].groups = groups;
-    state_->notes[body.slot].mask = mask;
+    state_->filters[body.slot] = {groups, mask};
     state_->pairs_found = false;
 }
 
@@ -423,23 +507,16 @@ std::span<const Contact> Scene::find_contacts() {
     const FloatEnvironment environment;
     const auto start = std::chrono::steady_clock::now();
     state_->all_or_nothing([&] {
-        state_->look_ahead();
         state_->find_pairs();
-        const std::chrono::duration<double, std::milli> broad = std::chrono::steady_clock::now() - start;
-        state_->call_threads(state_->pairs.size());
-        state_->find_contacts(broad.count());
+        return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     });
     return *state_->contacts;
 }
 
 std::span<const Contact> Scene::find_contacts(std::span<const Pair> pairs) {
     const FloatEnvironment environment;
-    state_->call_threads(pairs.size());
     state_->set_pairs(pairs);
-    state_->all_or_nothing([&] {
-        state_->look_ahead();
-        state_->find_contacts(0);
-    });
+    state_->all_or_nothing([] { return 0.0; });
     return *state_->contacts;
 }
 

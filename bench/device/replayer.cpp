@@ -52,7 +52,8 @@ void Replayer::step(std::size_t k) {
         bodies_[i].pose = now.poses[i % count];
         bodies_[i].centred = centred_pose(*bodies_[i].shape, bodies_[i].pose);
     }
-    narrow_.step(bodies_, pairs_, contacts_, stats_);
+    moved_.forget(); // every pose is set
+    narrow_.step(bodies_, moved_, pairs_, contacts_, stats_);
     step_us_ = peers::now().wall - start;
 }
 

@@ -31,6 +31,7 @@ private:
     const Work& work_;
     std::uint32_t copies_;
     NarrowPhase narrow_;
+    MovedBodies moved_;
     std::vector<PlacedBody> bodies_;
     std::vector<SlotPair> pairs_;
     std::vector<Contact> contacts_;

@@ -93,14 +93,14 @@ Batch make_batch(std::uint32_t triangles, std::size_t pairs, std::size_t steps) 
 }
 
 /// Unit boxes scattered so that each meets about three others.
-std::vector<WorldBox> make_boxes(std::size_t count) {
+std::vector<Box> make_boxes(std::size_t count) {
     // Two unit cubes overlap when their middles are less than 1 apart on every axis: a volume of 8.
     const double half = 0.5 * std::cbrt(8.0 * static_cast<double>(count) / 3);
     scenes::Random random(11);
-    std::vector<WorldBox> boxes;
-    for (BodySlot i = 0; i < count; ++i) {
+    std::vector<Box> boxes;
+    for (std::size_t i = 0; i < count; ++i) {
         const double x = half * random.symmetric(), y = half * random.symmetric(), z = half * random.symmetric();
-        boxes.push_back({{{x - 0.5, y - 0.5, z - 0.5}, {x + 0.5, y + 0.5, z + 0.5}}, i});
+        boxes.push_back({{x - 0.5, y - 0.5, z - 0.5}, {x + 0.5, y + 0.5, z + 0.5}});
     }
     return boxes;
 }
@@ -202,7 +202,8 @@ public:
 
 private:
     void step(std::span<const PlacedBody> bodies) {
-        part_->begin(bodies, batch_.pairs, settings_);
+        moved_.forget(); // all of them
+        part_->begin(bodies, moved_, batch_.pairs, settings_);
         part_->end(contacts_);
     }
 
@@ -210,6 +211,7 @@ private:
     Settings settings_;
     CallgrindDevice* device_ = nullptr; ///< the part's
     std::unique_ptr<Part> part_;
+    MovedBodies moved_;
     std::vector<Contact> contacts_;
 };
 
@@ -250,7 +252,8 @@ void count_all() {
     shapes.add(small.shape);
     const Settings standard = settings(Method::standard);
     const Motion motion;
-    const Update update{*opened.device, executor, shapes, small.steps[0], small.pairs, motion, standard};
+    const MovedBodies moved;
+    const Update update{*opened.device, executor, shapes, small.steps[0], moved, small.pairs, motion, standard};
     Pipeline pipeline;
     pipeline.begin(update);
     pipeline.end(update);
@@ -260,9 +263,9 @@ void count_all() {
     count_host("place_contacts,standard", local.size(),
                [&] { placer.run(executor, Direction::reprojected, small.steps[0], small.pairs, local, placed); });
 
-    const std::vector<WorldBox> boxes = make_boxes(4096);
+    const std::vector<Box> boxes = make_boxes(4096);
     std::vector<SlotPair> pairs;
-    count_host("broad_phase,boxes", boxes.size(), [&] { BroadPhase().find(executor, boxes, pairs); });
+    count_host("broad_phase,boxes", boxes.size(), [&] { BroadPhase().find(executor, {boxes, {}}, pairs); });
     count_host("make_shape,knot", small.mesh.triangles.size(), [&] { Shape::make(small.mesh); });
     const auto made = Shape::make(small.mesh);
     Executor one_thread(1);

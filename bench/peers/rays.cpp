@@ -40,7 +40,7 @@ public:
     }
 
 protected:
-    Update update() { return {*opened_.device, *opened_.executor, shapes_, bodies_, pairs_, motion_, settings_}; }
+    Update update() { return {*opened_.device, *opened_.executor, shapes_, bodies_, moved_, pairs_, motion_, settings_}; }
 
     // grid: those alone that the grids of the shapes leave. They are cast, too.
     void find(bool grid) {
@@ -58,6 +58,7 @@ protected:
     ShapeStore shapes_;
     std::vector<PlacedBody> bodies_;
     std::vector<SlotPair> pairs_;
+    MovedBodies moved_;
     Motion motion_;
     Settings settings_;
     StandardRays standard_;

@@ -97,7 +97,8 @@ public:
 
     /// Finds the pairs whose boxes overlap (our own broad phase) and then their contacts. Throws std::runtime_error
     /// where the last device fails, and InputError for a step too large for 32 bits (2^31 pairs, 2^32 rays). It then
-    /// has no contacts, and the next step begins anew.
+    /// has no contacts, and the next step begins anew. A step in which nothing is new, gone or elsewhere has the
+    /// contacts of the last one, no longer new, and no work but with `iterative` and `predictive`.
     std::span<const Contact> find_contacts();
     /// Contacts of the pairs that the caller's own broad phase found: in any order, duplicates allowed. Throws as the
     /// other one; and InputError for a pair of a body with itself or one that is not in the scene, before it begins.

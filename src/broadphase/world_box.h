@@ -2,17 +2,15 @@
 #pragma once
 
 #include "mesh/measure.h"
-#include "slot_pair.h"
+
+#include <limits>
 
 namespace raycontact {
 
-/// World box of a body, metres.
-struct WorldBox : Box {
-    BodySlot body = 0;
-    friend bool operator==(const WorldBox& a, const WorldBox& b) {
-        return a.low == b.low && a.high == b.high && a.body == b.body;
-    }
-};
+/// Touches nothing.
+constexpr double infinitely_far = std::numeric_limits<double>::infinity();
+constexpr Box no_box{{infinitely_far, infinitely_far, infinitely_far},
+                     {-infinitely_far, -infinitely_far, -infinitely_far}};
 
 /// The box around a body-frame box that is widened by `grow` metres on every side, in the body frame, and then placed.
 Box world_box(const Box& own, const Pose& pose, double grow);

@@ -83,12 +83,12 @@ namespace clash {
 namespace {
 
 /// Shapes round vertices to a ten-millionth of their size.
-WorldBox box_of(const Part& part, BodySlot number) {
+Box box_of(const Part& part) {
     std::vector<Vec3> placed;
     placed.reserve(part.mesh->vertices.size());
     for (const Vec3& v : part.mesh->vertices) placed.push_back(transform_point(part.pose, v));
     const Box box = raycontact::box_of(placed);
-    return {world_box(box, {}, 1e-6 * length(box.high - box.low)), number};
+    return world_box(box, {}, 1e-6 * length(box.high - box.low));
 }
 
 /// The mesh's name before a message; it may be another part's, too.
@@ -133,17 +133,17 @@ std::vector<Part> parts_of(std::span<const AssemblyPart> given) {
 }
 
 std::vector<PartPair> near_boxes(const std::vector<Part>& parts, double reach) {
-    std::vector<WorldBox> boxes;
-    for (std::size_t i = 0; i < parts.size(); ++i) boxes.push_back(box_of(parts[i], static_cast<BodySlot>(i)));
-    std::vector<WorldBox> grown = boxes;
+    std::vector<Box> boxes(parts.size());
+    Executor executor(0);
+    executor.each(parts.size(), 1, [&](std::uint32_t i) { boxes[i] = box_of(parts[i]); });
+    std::vector<Box> grown = boxes;
     const Vec3 half{0.5 * reach, 0.5 * reach, 0.5 * reach};
-    for (WorldBox& box : grown) {
+    for (Box& box : grown) {
         box.low = box.low - half;
         box.high = box.high + half;
     }
     std::vector<SlotPair> found;
-    Executor executor(boxes.size() < 1000 ? 1 : 0);
-    BroadPhase().find(executor, grown, found);
+    BroadPhase().find(executor, {grown, {}}, found);
     std::vector<PartPair> pairs;
     pairs.reserve(found.size());
     for (const auto& [a, b] : found) pairs.push_back({a, b, !boxes[a].touches(boxes[b])});

@@ -33,6 +33,11 @@ public:
     std::span<const Known> previous() const { return previous_; }
     /// contacts: sorted; sets is_new.
     void mark(std::span<Contact> contacts);
+    /// All are as in the last step.
+    void rest() {
+        lost_.clear();
+        new_count_ = 0;
+    }
     std::span<const LostContact> lost() const { return lost_; }
     /// Of those that touch.
     std::size_t new_count() const { return new_count_; }

@@ -28,12 +28,12 @@ kernels::BodyPlace place_of(const PlacedBody& body, const Pose& pose, kernels::u
 void DevicePairs::list_moved(const Update& update, Pose PlacedBody::*pose, Placing& at) {
     at.moved.clear();
     at.sent.resize(update.bodies.size(), {{}, {}, NONE, 0}); // no shape: this body was never sent
-    for (kernels::uint i = 0; i < update.bodies.size(); ++i) {
-        if (update.bodies[i].shape == nullptr) continue;
+    update.moved.each_since(at.seen, update.bodies.size(), [&](BodySlot i) {
+        if (update.bodies[i].shape == nullptr) return;
         const kernels::BodyPlace now = place_of(update.bodies[i], update.bodies[i].*pose, i);
-        if (std::bit_cast<PlaceBits>(now) == std::bit_cast<PlaceBits>(at.sent[i])) continue;
+        if (std::bit_cast<PlaceBits>(now) == std::bit_cast<PlaceBits>(at.sent[i])) return;
         at.moved.push_back(at.sent[i] = now);
-    }
+    });
 }
 
 void DevicePairs::list_changes(const Update& update) {

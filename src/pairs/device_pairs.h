@@ -29,6 +29,7 @@ public:
 private:
     /// The pairs at one time.
     struct Placing {
+        MovedBodies::Seen seen = 0;
         std::vector<kernels::BodyPlace> sent, moved;    ///< by body; of those that moved
         std::vector<kernels::DirectedPair> host_placed; ///< of a device without double
         Array<kernels::BodyPlace> device_bodies, device_moved;

@@ -8,6 +8,10 @@
 #include <raycontact/settings.h>
 #include <raycontact/shape.h>
 
+#include <algorithm>
+#include <array>
+#include <bit>
+
 namespace raycontact {
 
 /// A body as the pipeline sees it.
@@ -20,6 +24,17 @@ struct PlacedBody {
     Pose next{};                   ///< of that frame, where it is expected at the next step; with speculative contacts
     double margin = -1;            ///< of its own for speculative contacts, metres; negative: none
 };
+
+/// Bits, not values: 0 and -0 are one place, but not one contact.
+inline bool same_bits(const Pose& p, const Pose& q) {
+    using Bits = std::array<std::uint64_t, 12>;
+    const auto bits = [](const Pose& pose) {
+        std::array<double, 12> numbers{pose.translation.x, pose.translation.y, pose.translation.z};
+        std::ranges::copy(pose.rotation, numbers.begin() + 3);
+        return std::bit_cast<Bits>(numbers);
+    };
+    return bits(p) == bits(q);
+}
 
 /// The pose of the frame about the shape's centre.
 inline Pose centred_pose(const Shape& shape, const Pose& pose) {

@@ -32,31 +32,41 @@ float arc_of(float turn, float far, float way) {
 }
 } // namespace
 
-void Motion::update(Executor& executor, std::span<const PlacedBody> bodies) {
+void Motion::update(Executor& executor, std::span<const PlacedBody> bodies, const MovedBodies& moved) {
     bodies_.resize(bodies.size());
     lasts_.resize(bodies.size());
-    next_.clear();
-    executor.each(bodies.size(), 1024, [&](std::uint32_t i) {
-        Last& last = lasts_[i];
-        if (bodies[i].shape == nullptr) {
-            last.known = false;
-            return;
-        }
-        const Pose& now = bodies[i].centred;
-        // Steps of a method that asks for no motion may have passed, and a body with them.
-        const bool known = last.known && last.generation == bodies[i].generation;
-        const double shear = shear_bound(now);
-        bodies_[i] = body_of(bodies[i], known ? last.centred : now, now, std::max(shear, last.shear));
-        last = {now, shear, bodies[i].generation, true};
-    });
+    const bool steps_passed = !moved.is_next(seen_);
+    if (any_moving_) seen_ = 0;
+    const bool all = moved.each_since(seen_, executor, bodies.size(), [&](BodySlot body) { follow(bodies, body); });
+    // What moved in the last step alone rests now.
+    if (!all)
+        executor.each(moving_.size(), 512, [&](std::uint32_t i) {
+            if (moving_[i] < bodies.size() && !moved.is_marked(moving_[i])) follow(bodies, moving_[i]);
+        });
+    moving_.assign(moved.list().begin(), moved.list().end());
+    any_moving_ = steps_passed;
 }
 
-void Motion::expect(Executor& executor, std::span<const PlacedBody> bodies) {
-    next_.resize(bodies.size());
-    executor.each(bodies.size(), 1024, [&](std::uint32_t i) {
-        if (bodies[i].shape == nullptr) return;
-        const Pose &now = bodies[i].centred, &next = bodies[i].next;
-        next_[i] = body_of(bodies[i], now, next, std::max(lasts_[i].shear, shear_bound(next)));
+void Motion::follow(std::span<const PlacedBody> bodies, BodySlot body) {
+    Last& last = lasts_[body];
+    if (bodies[body].shape == nullptr) {
+        last.known = false;
+        return;
+    }
+    const Pose& now = bodies[body].centred;
+    // Steps of a method that asks for no motion may have passed, and a body with them.
+    const bool known = last.known && last.generation == bodies[body].generation;
+    const double shear = shear_bound(now);
+    bodies_[body] = body_of(bodies[body], known ? last.centred : now, now, std::max(shear, last.shear));
+    last = {now, shear, bodies[body].generation, true};
+}
+
+void Motion::expect(Executor& executor, std::span<const PlacedBody> bodies, const MovedBodies& moved) {
+    if (next_.size() != bodies.size()) next_.resize(bodies.size());
+    moved.each_since(expected_, executor, bodies.size(), [&](BodySlot body) {
+        if (bodies[body].shape == nullptr) return;
+        const Pose &now = bodies[body].centred, &next = bodies[body].next;
+        next_[body] = body_of(bodies[body], now, next, std::max(lasts_[body].shear, shear_bound(next)));
     });
 }
 

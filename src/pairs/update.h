@@ -2,6 +2,7 @@
 #pragma once
 
 #include "executor/executor.h"
+#include "moved_bodies.h"
 #include "pairs/directed_pairs.h"
 #include "pairs/motion.h"
 #include "shape/shape_store.h"
@@ -18,6 +19,7 @@ struct Update {
     Executor& executor;
     const ShapeStore& shapes;
     std::span<const PlacedBody> bodies;
+    const MovedBodies& moved;
     std::span<const SlotPair> pairs; ///< the part's: sorted, each once
     const Motion& motion;            ///< not up to date with `standard`, which does not use it
     const Settings& settings;

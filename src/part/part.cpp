@@ -11,12 +11,13 @@ namespace raycontact {
 namespace {
 
 const Settings before_any_step;
+const MovedBodies none_moved;
 
 } // namespace
 
 Part::Part(OpenDevice opened)
     : executor_(std::move(opened.executor)), device_(std::make_unique<CountingDevice>(std::move(opened.device))),
-      shapes_(*device_), settings_(&before_any_step) {}
+      shapes_(*device_), moved_(&none_moved), settings_(&before_any_step) {}
 
 void Part::trim() {
     pipeline_.trim();
@@ -24,17 +25,19 @@ void Part::trim() {
 }
 
 Update Part::update(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs) const {
-    return {*device_, *executor_, shapes_, bodies, pairs, motion_, *settings_};
+    return {*device_, *executor_, shapes_, bodies, *moved_, pairs, motion_, *settings_};
 }
 
-void Part::begin(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs, const Settings& settings) {
+void Part::begin(std::span<const PlacedBody> bodies, const MovedBodies& moved, std::span<const SlotPair> pairs,
+                 const Settings& settings) {
     bodies_ = bodies;
+    moved_ = &moved;
     pairs_ = pairs;
     settings_ = &settings;
     adopted_.clear();
     if (needs_motion(settings, device_->traits())) {
-        motion_.update(*executor_, bodies);
-        if (settings.is_speculative()) motion_.expect(*executor_, bodies);
+        motion_.update(*executor_, bodies, moved);
+        if (settings.is_speculative()) motion_.expect(*executor_, bodies, moved);
     }
     pipeline_.begin(update(bodies, pairs));
 }

@@ -23,7 +23,8 @@ public:
 
     /// Starts a step. bodies: of the scene, by slot. pairs: the part's, sorted, each once. All stay valid until the
     /// next begin().
-    void begin(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs, const Settings& settings);
+    void begin(std::span<const PlacedBody> bodies, const MovedBodies& moved, std::span<const SlotPair> pairs,
+               const Settings& settings);
     /// The contacts of the step, sorted.
     void end(std::vector<Contact>& contacts);
     /// After end(), in the same step: sorts in the contacts of pairs that are new to this part, because another one
@@ -69,6 +70,7 @@ private:
     std::vector<std::unique_ptr<Adopted>> adopted_;
 
     std::span<const PlacedBody> bodies_; ///< of the step, as what follows
+    const MovedBodies* moved_;
     std::span<const SlotPair> pairs_;
     const Settings* settings_;
 };

@@ -39,12 +39,14 @@ public:
     }
     const std::vector<Contact>& step(const MovingCrowd& crowd) { return step(crowd, crowd.pairs); }
     const std::vector<Contact>& step(const MovingCrowd& crowd, std::span<const SlotPair> pairs) {
-        narrow.step(crowd.bodies, pairs, contacts, stats);
+        narrow.step(crowd.bodies, moved, pairs, contacts, stats);
+        moved.forget();
         return contacts;
     }
 
     std::vector<std::shared_ptr<Script>> scripts;
     NarrowPhase narrow;
+    MovedBodies moved;
     std::vector<Contact> contacts;
     StepStats stats;
 
@@ -80,13 +82,15 @@ public:
 
 private:
     std::vector<Contact> contacts_of(Part& part, const MovingCrowd& crowd, std::span<const SlotPair> pairs) {
-        part.begin(crowd.bodies, pairs, settings_);
+        moved_.forget();
+        part.begin(crowd.bodies, moved_, pairs, settings_);
         std::vector<Contact> contacts;
         part.end(contacts);
         return contacts;
     }
 
     Settings settings_;
+    MovedBodies moved_;
     Part first_{open_device("cpu", 1)}, second_{open_device("cpu", 1)};
 };
 

@@ -217,6 +217,7 @@ TEST(parts, of_different_devices_hand_pairs_over) {
             bodies[i].centred = centred_pose(*bodies[i].shape, bodies[i].pose);
             for (BodySlot j = i + 1; j < crowd.bodies; ++j) pairs.emplace_back(i, j);
         }
+        MovedBodies moved;
         std::vector<bool> is_elsewhere(pairs.size());
         std::size_t contacts = 0;
         for (int step = 0; step < 12; ++step) {
@@ -235,9 +236,10 @@ TEST(parts, of_different_devices_hand_pairs_over) {
                 body.pose.translation = body.pose.translation + crowd.speed * random.in_ball();
                 body.centred = centred_pose(*body.shape, body.pose);
             }
-            whole.begin(bodies, pairs, settings);
-            on_cpu.begin(bodies, stay, settings);
-            elsewhere.begin(bodies, away, settings);
+            moved.forget(); // every body may have moved
+            whole.begin(bodies, moved, pairs, settings);
+            on_cpu.begin(bodies, moved, stay, settings);
+            elsewhere.begin(bodies, moved, away, settings);
             std::vector<Contact> expected, here, there;
             whole.end(expected);
             on_cpu.end(here);

@@ -30,6 +30,7 @@ void place_centres(std::vector<PlacedBody>& bodies) {
 Outcome run_part(Part& part, const Work& work, const std::vector<Way>& ways) {
     for (const auto& shape : work.shapes) part.shapes().add(shape);
     Outcome outcome;
+    MovedBodies moved;
     for (const Way& way : ways) {
         Settings settings;
         settings.method = way.method;
@@ -42,7 +43,8 @@ Outcome run_part(Part& part, const Work& work, const std::vector<Way>& ways) {
         for (const double by : {0.0, 1e-6, 0.004, 0.1}) {
             for (std::size_t i = 0; i < bodies.size(); i += 2) bodies[i].pose.translation.x += by;
             place_centres(bodies);
-            part.begin(bodies, work.pairs, settings);
+            moved.forget();
+            part.begin(bodies, moved, work.pairs, settings);
             std::vector<Contact> found;
             part.end(found);
             outcome.contacts.insert(outcome.contacts.end(), found.begin(), found.end());

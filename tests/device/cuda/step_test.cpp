@@ -30,8 +30,9 @@ std::vector<Contact> step_on(std::vector<OpenDevice> devices, const MovingCrowd&
     NarrowPhase narrow(settings, std::move(devices));
     for (const auto& shape : crowd.shapes) narrow.parts().add_shape(shape);
     std::vector<Contact> contacts;
+    const MovedBodies moved;
     before();
-    narrow.step(crowd.bodies, crowd.pairs, contacts, stats);
+    narrow.step(crowd.bodies, moved, crowd.pairs, contacts, stats);
     after();
     return contacts;
 }

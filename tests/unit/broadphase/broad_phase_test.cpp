@@ -2,23 +2,29 @@
 #include "broadphase/broad_phase.h"
 
 #include <algorithm>
+#include <array>
 #include <gtest/gtest.h>
 #include <random>
+#include <utility>
 
 namespace raycontact {
 namespace {
 
-bool overlap(const WorldBox& a, const WorldBox& b) {
+using Filter = BroadPhaseInput::Filter;
+
+bool overlap(const Box& a, const Box& b) {
     return a.low.x <= b.high.x && b.low.x <= a.high.x && a.low.y <= b.high.y && b.low.y <= a.high.y
            && a.low.z <= b.high.z && b.low.z <= a.high.z;
 }
 
-std::vector<SlotPair> all_pairs(const std::vector<WorldBox>& boxes) {
+std::vector<SlotPair> all_pairs(const std::vector<Box>& boxes, const std::vector<Filter>& filters = {}) {
     std::vector<SlotPair> pairs;
-    for (const WorldBox& a : boxes)
-        for (const WorldBox& b : boxes)
-            if (a.body < b.body && overlap(a, b)) pairs.emplace_back(a.body, b.body);
-    std::sort(pairs.begin(), pairs.end());
+    for (BodySlot a = 0; a < boxes.size(); ++a)
+        for (BodySlot b = a + 1; b < boxes.size(); ++b)
+            if (overlap(boxes[a], boxes[b])
+                && (filters.empty()
+                    || ((filters[a].groups & filters[b].mask) != 0 && (filters[b].groups & filters[a].mask) != 0)))
+                pairs.emplace_back(a, b);
     return pairs;
 }
 
@@ -28,53 +34,71 @@ TEST(BroadPhase, AgreesWithEveryPairTested) {
     for (int round = 0; round < 60; ++round) {
         // Integer corners, so that many boxes only touch.
         std::uniform_int_distribution<int> place(0, round % 2 ? 40 : 8), size(0, 4);
-        std::vector<WorldBox> boxes;
+        std::vector<Box> boxes;
         for (BodySlot body = 0; body < 80; ++body) {
             const Vec3 low{double(place(random)), double(place(random)), double(round % 3 ? place(random) : 0)};
-            boxes.push_back({{low, {low.x + size(random), low.y + size(random), low.z + size(random)}}, body});
+            boxes.push_back({low, {low.x + size(random), low.y + size(random), low.z + size(random)}});
         }
-        const std::vector<SlotPair> expected = all_pairs(boxes);
-        std::vector<SlotPair> pairs, again;
+        if (round % 5 == 0) boxes[7] = boxes[0] = no_box;
+        std::vector<SlotPair> pairs;
         Executor executor(1);
-        BroadPhase().find(executor, boxes, pairs);
-        EXPECT_EQ(pairs, expected);
-        std::shuffle(boxes.begin(), boxes.end(), random);
-        BroadPhase().find(executor, boxes, again);
-        EXPECT_EQ(again, expected) << "the order of the bodies decides nothing";
+        BroadPhase().find(executor, {boxes, {}}, pairs);
+        EXPECT_EQ(pairs, all_pairs(boxes));
         found += pairs.size();
     }
     EXPECT_GT(found, 5000u);
 }
 
-// Trees of several levels; boxes that move far, come and go, beside one that holds nearly all.
+// Trees of several levels; boxes that move far, come and go, beside one that holds nearly all. update() is told of the
+// few or the many that moved, and says whether the pairs are others.
 TEST(BroadPhase, AgreesWithEveryPairTestedWhileBoxesMove) {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> any(0, 1);
     Executor one(1), four(4);
+    std::size_t same = 0, others = 0;
     for (const double far : {0.0, 3e7, 1e12}) {
-        std::vector<WorldBox> boxes;
-        const auto move = [&](WorldBox& box, double side) {
+        std::vector<Box> boxes;
+        std::vector<Filter> filters(2501);
+        for (std::size_t i = 0; i < 2501; i += 9) filters[i] = {2, i % 2 ? 1u : 3u};
+        const auto move = [&](Box& box, double side) {
             const Vec3 low{far + side * any(random), side * any(random), side * any(random)};
-            box.low = low;
-            box.high = low + Vec3{any(random), any(random), any(random)};
+            box = {low, low + Vec3{any(random), any(random), any(random)}};
         };
-        for (BodySlot body = 0; body < 2500; ++body) move(boxes.emplace_back(WorldBox{{}, body}), 20);
-        boxes.push_back({{{far, 0, 0}, {far + 15, 15, 1}}, 2500});
-        BroadPhase kept, of_four;
-        std::vector<SlotPair> pairs, again;
-        for (int step = 0; step < 12; ++step) {
-            // A few, then all, into a corner, and back.
-            for (std::size_t i = 0; i + 1 < boxes.size(); i += step < 4 ? 50 : 1)
-                move(boxes[i], step % 3 == 1 ? 5 : 20);
-            if (step % 4 == 3) boxes.erase(boxes.begin() + 7 * step);
-            const std::vector<SlotPair> expected = all_pairs(boxes);
+        for (BodySlot body = 0; body < 2500; ++body) move(boxes.emplace_back(), 20);
+        boxes.push_back({{far, 0, 0}, {far + 15, 15, 1}});
+        BroadPhase kept, of_four, told;
+        std::vector<SlotPair> pairs, again, of_told;
+        told.find(one, {boxes, filters}, of_told);
+        std::vector<SlotPair> expected = all_pairs(boxes, filters);
+        for (int step = 0; step < 24; ++step) {
+            std::vector<BodySlot> changed;
+            const auto change = [&](std::size_t i) { changed.push_back(static_cast<BodySlot>(i)); };
+            if (step % 6 == 5) { // hardly
+                boxes[11].high.x += 1e-9;
+                change(11);
+            } else { // a few, then all, into a corner, and back
+                for (std::size_t i = 0; i + 1 < boxes.size(); i += step % 8 < 4 ? 50 : 1) {
+                    move(boxes[i], step % 3 == 1 ? 5 : 20);
+                    change(i);
+                }
+            }
+            if (step % 4 == 3) {
+                boxes[7 * step + 1] = no_box;
+                if (changed.size() < 100) change(7 * step + 1);
+            }
+            const std::vector<SlotPair> before = std::exchange(expected, all_pairs(boxes, filters));
             ASSERT_GT(expected.size(), 300u);
-            kept.find(one, boxes, pairs);
+            kept.find(one, {boxes, filters}, pairs);
             ASSERT_EQ(pairs, expected) << "step " << step;
-            of_four.find(four, boxes, again);
+            of_four.find(four, {boxes, filters}, again);
             ASSERT_EQ(again, expected) << "step " << step;
+            ASSERT_EQ(told.update(step % 2 ? four : one, {boxes, filters}, changed, of_told), before != expected);
+            ASSERT_EQ(of_told, expected) << "step " << step;
+            (before == expected ? same : others) += 1;
         }
     }
+    EXPECT_GT(same, 5u);
+    EXPECT_GT(others, 30u);
 }
 
 TEST(BroadPhase, OneBoxOrNoneHasNoPair) {
@@ -83,12 +107,14 @@ TEST(BroadPhase, OneBoxOrNoneHasNoPair) {
     std::vector<SlotPair> pairs{{1, 2}};
     broad_phase.find(executor, {}, pairs);
     EXPECT_TRUE(pairs.empty());
-    const std::vector<WorldBox> boxes(1, WorldBox{{{0, 0, 0}, {1, 1, 1}}, 3});
-    broad_phase.find(executor, boxes, pairs);
+    std::vector<Box> boxes{{{0, 0, 0}, {1, 1, 1}}};
+    broad_phase.find(executor, {boxes, {}}, pairs);
     EXPECT_TRUE(pairs.empty());
-    const std::vector<WorldBox> alike{boxes[0], WorldBox{boxes[0], 1}, WorldBox{boxes[0], 9}};
-    broad_phase.find(executor, alike, pairs);
-    EXPECT_EQ(pairs, (std::vector<SlotPair>{{1, 3}, {1, 9}, {3, 9}}));
+    boxes.resize(4, boxes[0]);
+    boxes[1] = no_box;
+    EXPECT_TRUE(broad_phase.update(executor, {boxes, {}}, std::array<BodySlot, 3>{3, 2, 1}, pairs));
+    EXPECT_EQ(pairs, (std::vector<SlotPair>{{0, 2}, {0, 3}, {2, 3}}));
+    EXPECT_FALSE(broad_phase.update(executor, {boxes, {}}, {}, pairs));
 }
 
 TEST(WorldBox, HoldsTheTurnedBox) {

@@ -67,6 +67,7 @@ TEST(Part, PairsThatChangeItGoOnAsTheyWere) {
         const auto whole = crowd.make_part(0), a = crowd.make_part(0), b = crowd.make_part(1);
         Random random(9);
         std::vector<bool> on_b(crowd.pairs.size());
+        MovedBodies moves;
         std::size_t moved = 0, contacts = 0, bytes = 0;
         for (int step = 0; step < 40; ++step) {
             // Any pair may change its part, in either direction.
@@ -88,9 +89,10 @@ TEST(Part, PairsThatChangeItGoOnAsTheyWere) {
             crowd.move(step % 5 == 4 ? 0.004 : 0.0004);
             const std::vector<PlacedBody> seen_whole = crowd.seen_by(*whole), seen_a = crowd.seen_by(*a),
                                           seen_b = crowd.seen_by(*b);
-            whole->begin(seen_whole, crowd.pairs, settings);
-            a->begin(seen_a, of_a, settings);
-            b->begin(seen_b, of_b, settings);
+            moves.forget(); // every body may have moved
+            whole->begin(seen_whole, moves, crowd.pairs, settings);
+            a->begin(seen_a, moves, of_a, settings);
+            b->begin(seen_b, moves, of_b, settings);
             std::vector<Contact> expected, found, others;
             whole->end(expected);
             a->end(found);

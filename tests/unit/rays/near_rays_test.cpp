@@ -34,19 +34,20 @@ public:
             body.pose = pose;
             body.centred = centred_pose(*body.shape, pose);
         };
+        moved_.forget();
         place(a, pose_a);
         place(b, pose_b);
         pairs.emplace_back(bodies.size() - 2, bodies.size() - 1);
     }
     std::span<const AskedPair> find() {
-        const Update update{*opened_.device, *opened_.executor, *store_, bodies, pairs, motion_, settings_};
+        const Update update{*opened_.device, *opened_.executor, *store_, bodies, moved_, pairs, motion_, settings_};
         pipeline_.begin(update);
         pipeline_.end(update);
         return pipeline_.asked();
     }
     /// By pair: how far its bodies can move, either against the other, before an edge crosses that is not found now.
     std::vector<double> clear(double ahead, RayBatch& batch, NearRays& rays) {
-        const Update update{*opened_.device, *opened_.executor, *store_, bodies, pairs, motion_, settings_};
+        const Update update{*opened_.device, *opened_.executor, *store_, bodies, moved_, pairs, motion_, settings_};
         batch.resize(update.device, 0);
         Array<kernels::DirectedPair> placed;
         Array<float> beyond;
@@ -81,6 +82,7 @@ private:
     OpenDevice opened_;
     std::unique_ptr<ShapeStore> store_;
     Settings settings_;
+    MovedBodies moved_;
     Motion motion_;
     Pipeline pipeline_;
 };
