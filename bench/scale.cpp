@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a step of many bodies takes with our own broad phase: all in their places, a hundredth of them moving, all
 // moving. On a grid with room between them, so that no pair is found, and close enough that neighbours touch. Medians
-// of milliseconds.
+// of milliseconds; and what a query of the scene takes.
 #include "bench/commands.h"
 #include "bench/options.h"
 
 #include <raycontact/scene.h>
 #include <scenes/models/model.h>
 #include <scenes/peers/clock.h>
+#include <scenes/random.h>
 
 #include <algorithm>
 #include <cmath>
@@ -56,6 +57,31 @@ public:
         std::fflush(stdout);
     }
 
+    /// After a hundredth of the bodies has moved, which the first ray learns.
+    void measure_queries(double side) {
+        for (std::size_t i = 0; i < bodies_.size(); i += 100) {
+            poses_[i].translation.z += 0.001;
+            scene_.set_pose(bodies_[i], poses_[i]);
+        }
+        constexpr std::size_t count = 2000;
+        scenes::Random random(3);
+        const auto place = [&] {
+            const auto one = [&] { return side * 0.5 * (random.symmetric() + 1); };
+            return Vec3{one(), one(), one()};
+        };
+        std::size_t hits = 0;
+        const double begin = peers::now().cpu;
+        for (std::size_t i = 0; i < count; ++i) {
+            const Vec3 direction{random.symmetric(), random.symmetric(), random.symmetric()};
+            hits += scene_.raycast(place(), direction).has_value();
+        }
+        const double middle = peers::now().cpu;
+        for (std::size_t i = 0; i < count; ++i) hits += scene_.closest_point(place()).has_value();
+        const double end = peers::now().cpu;
+        std::printf("queries      %8zu bodies, one thread: a ray %.2f us, a closest point %.2f us (%zu answers)\n",
+                    bodies_.size(), (middle - begin) / count, (end - middle) / count, hits);
+    }
+
 private:
     static Settings settings(const Size& size) {
         Settings made;
@@ -72,14 +98,15 @@ private:
 void measure(const Size& size) {
     const auto shape = Shape::make(scenes::scene_model("knot", 900).mesh);
     shape->prepare();
-    const Vec3 extent = shape->box_max() - shape->box_min();
-    const double widest = std::max({extent.x, extent.y, extent.z});
+    const Vec3 low = shape->box_min(), high = shape->box_max();
+    const double widest = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
     for (const auto& [name, spacing] : {std::pair("apart", 1.05 * widest), std::pair("touching", 0.9 * widest)}) {
         std::printf("%s\n", name);
         Grid grid(size, shape, spacing);
         grid.measure("at rest", 0, 0, size.steps);
         grid.measure("1 % moving", 100, 0.001 * widest, size.steps);
         grid.measure("all moving", 1, 0.001 * widest, size.steps);
+        grid.measure_queries(spacing * std::cbrt(double(size.bodies)));
     }
 }
 

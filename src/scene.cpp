@@ -12,6 +12,7 @@
 #include "pose_fault.h"
 #include "shape/preparer.h"
 #include "shape/shape_data.h"
+#include "world_boxes.h"
 
 #include <raycontact/error.h>
 
@@ -21,6 +22,7 @@
 #include <exception>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <unordered_map>
 
 namespace raycontact {
@@ -82,7 +84,7 @@ struct Scene::State {
     void set_pose(PlacedBody& body, BodySlot slot, const Pose& pose) {
         if (same_bits(body.pose, pose)) return;
         body.pose = pose;
-        moved.mark(slot);
+        mark(slot);
     }
 
     /// Wakes the threads, which sleep between steps; for few pairs one thread is enough.
@@ -90,11 +92,20 @@ struct Scene::State {
         if (pair_count > 256) narrow.parts().wake();
     }
 
+    void mark(BodySlot slot) noexcept {
+        moved.mark(slot);
+        world.mark(slot);
+    }
+    void forget_moves() noexcept {
+        moved.forget();
+        world.forget();
+    }
+
     void pack_shapes() {
         if (!narrow.parts().pack_shapes()) return;
         for (PlacedBody& body : bodies)
             if (body.shape != nullptr) body.shape_index = narrow.parts().index_of(body.shape);
-        moved.forget(); // whatever is kept of a body names its shape by that
+        forget_moves(); // whatever is kept of a body names its shape by that
     }
 
     void place_bodies() {
@@ -141,68 +152,21 @@ struct Scene::State {
         first = wanted;
     }
 
-    // How far beyond the box of an open mesh a vertex can lie and still reach it: the longest ray of this scene.
-    void measure_reach() {
-        float longest = 0;
-        for (const PlacedBody& body : bodies)
-            if (body.shape != nullptr) longest = std::max(longest, body.shape->data().header.ray_reach);
-        if (longest != reach) boxed = 0;
-        reach = longest;
-        reach_known = true;
-    }
-
-    Box box_of(BodySlot slot) const {
-        if (slot >= bodies.size() || bodies[slot].shape == nullptr) return no_box;
-        const PlacedBody& body = bodies[slot];
-        const Shape& shape = *body.shape;
-        const bool open = !shape.has_inside();
-        // What two boxes are wider by is at least the margin of their pair.
-        const double share = body.margin >= 0 ? 1 : 0.5;
-        const double near = next.empty() ? 0 : share * speculative_margin(narrow.settings(), body, body);
-        const auto box_at = [&](const Pose& pose) {
-            return world_box({shape.box_min(), shape.box_max()}, pose, (open ? double(reach) : 0) + near);
-        };
-        Box box = box_at(body.pose);
-        if (!next.empty()) box.add(box_at(next[slot]));
-        return box;
-    }
-
-    /// Lists the bodies whose boxes are others than at the last step.
-    void make_boxes() {
-        if (!reach_known) measure_reach();
-        // With room for bodies to come, which the broad phase takes as boxes that change.
-        if (boxes.size() < bodies.size() || boxes.size() > 4 * bodies.size() + 1024)
-            boxes.resize(bodies.size() + bodies.size() / 8, no_box);
-        is_changed.resize(boxes.size());
-        const auto make = [&](BodySlot slot) {
-            const Box box = box_of(slot);
-            is_changed[slot] = box.low != boxes[slot].low || box.high != boxes[slot].high;
-            boxes[slot] = box;
-        };
-        changed.clear();
-        const auto list = [&](BodySlot slot) {
-            if (is_changed[slot] != 0) changed.push_back(slot);
-        };
-        if (moved.each_since(boxed, narrow.parts().executor(), boxes.size(), make)) {
-            for (BodySlot slot = 0; slot < boxes.size(); ++slot) list(slot);
-        } else {
-            for (const BodySlot slot : moved.list())
-                if (slot < boxes.size()) list(slot);
-        }
-    }
-
     void find_pairs() {
-        make_boxes();
         Executor& executor = narrow.parts().executor();
-        const BroadPhaseInput input{boxes, filters};
-        const bool stood = std::exchange(pairs_found, false);
-        if (stood) {
-            if (broad_phase.update(executor, input, changed, slot_pairs)) name_pairs();
-        } else {
-            broad_phase.find(executor, input, slot_pairs);
-            name_pairs();
-        }
+        world.update(executor, bodies, next, narrow.settings());
+        const BroadPhaseInput input{world.boxes(), filters};
+        const bool stood = std::exchange(pairs_found, false) && !world.is_resized();
+        if (!stood) broad_phase.find(executor, world.tree(), input, slot_pairs);
+        if (!stood || broad_phase.update(executor, world.tree(), input, world.changed(), slot_pairs)) name_pairs();
+        world.accept();
         pairs_stand = pairs_found = true;
+    }
+
+    /// For queries between two steps, of which several may run at once.
+    void refresh_boxes() {
+        const std::lock_guard lock(refreshing);
+        if (!world.is_up_to_date()) world.update(narrow.parts().executor(), bodies, next, narrow.settings());
     }
 
     void name_pairs() {
@@ -263,7 +227,7 @@ struct Scene::State {
             find_contacts(broad_ms);
         } catch (...) {
             narrow.parts().forget(); // slots may get other bodies before the next step
-            moved.forget();
+            forget_moves();
             pairs_found = false;
             contacts = own;
             contacts->clear();
@@ -273,8 +237,10 @@ struct Scene::State {
 
     /// Before the broad phase.
     void look_ahead() {
-        next = narrow.settings().is_speculative() ? next_poses.update(narrow.parts().executor(), bodies, moved)
-                                                  : std::span<const Pose>();
+        next = {};
+        if (!narrow.settings().is_speculative()) return;
+        next = next_poses.update(narrow.parts().executor(), bodies, moved);
+        for (const BodySlot slot : moved.list()) world.mark(slot);
     }
 
     void end_step() {
@@ -283,7 +249,8 @@ struct Scene::State {
         stepped = moved.step_done();
     }
 
-    /// Where nothing has changed since the last step, a method whose contacts follow from the poses finds what it found.
+    /// Where nothing has changed since the last step, a method whose contacts follow from the poses finds what it
+    /// found.
     bool rests() const {
         return moved.is_next(stepped) && moved.list().empty() && !pairs_changed
                && !follows_rays(narrow.settings().method);
@@ -313,7 +280,7 @@ struct Scene::State {
     }
 
     void trim() {
-        boxes.shrink_to_fit();
+        world.trim();
         broad_phase.trim();
         pairs.shrink_to_fit();
         free_all(last_pairs);
@@ -340,14 +307,11 @@ struct Scene::State {
     MovedBodies moved;
     MovedBodies::Seen stepped = 0; ///< the last step that found contacts
     bool some_new = false;         ///< contacts may say so
-    MovedBodies::Seen placed = 0, boxed = 0; ///< what place_bodies() and make_boxes() have seen
+    MovedBodies::Seen placed = 0;  ///< what place_bodies() has seen
     NextPoses next_poses;
-    std::span<const Pose> next; ///< of this step; empty without speculative contacts
-    float reach = 0;            ///< metres
-    bool reach_known = true;
-    std::vector<Box> boxes;        ///< by slot
-    std::vector<char> is_changed;  ///< by slot
-    std::vector<BodySlot> changed; ///< since the last step that found pairs
+    std::span<const Pose> next; ///< of the last step; empty without speculative contacts
+    WorldBoxes world;
+    std::mutex refreshing; ///< world
     BroadPhase broad_phase;
     std::vector<Pair> pairs, last_pairs; ///< last_pairs: of the last step whose pairs were others
     std::vector<SlotPair> slot_pairs;    ///< `pairs` by slot
@@ -382,12 +346,13 @@ BodyId Scene::add(std::shared_ptr<const Shape> shape, const Pose& pose) {
         s.filters.resize(slot + std::size_t{1});
     }
     s.moved.make_room(slot + std::size_t{1});
+    s.world.make_room(slot + std::size_t{1});
     s.pack_shapes(); // without a step in between they would pile up
     s.narrow.parts().add_shape(shape);
     s.user_data[slot] = 0;
     s.filters[slot] = {};
-    s.reach_known = s.reach_known && shape->data().header.ray_reach <= s.reach;
-    s.moved.mark(slot);
+    s.world.add_shape(*shape);
+    s.mark(slot);
     s.bodies[slot] = {shape.get(), s.narrow.parts().index_of(shape.get()), id.generation, pose, pose, pose};
     return s.slots.give();
 }
@@ -397,9 +362,9 @@ void Scene::remove(BodyId body) {
     PlacedBody& gone = s.existing(body, "Scene::remove");
     s.narrow.parts().remove_shape(gone.shape);
     s.met_shapes.erase(gone.shape); // its address may be another's soon
-    s.reach_known = s.reach_known && gone.shape->data().header.ray_reach < s.reach;
+    s.world.remove_shape(*gone.shape);
     gone.shape = nullptr;
-    s.moved.mark(body.slot);
+    s.mark(body.slot);
     s.pairs_stand = false;
     s.slots.take_back(body.slot);
     s.cut_to_slots();
@@ -450,7 +415,7 @@ void Scene::set_speculative_margin(BodyId body, std::optional<double> margin) {
     }
     if (own.margin == margin.value_or(-1)) return;
     own.margin = margin.value_or(-1);
-    state_->moved.mark(body.slot);
+    state_->mark(body.slot);
     state_->narrow.parts().forget(); // what is kept was sought by the old one
 }
 void Scene::set_settings(const Settings& settings) {
@@ -458,8 +423,11 @@ void Scene::set_settings(const Settings& settings) {
     if (settings.execution != state_->narrow.settings().execution)
         throw InputError("devices, schedule and threads are fixed when a scene is made; make another scene for others");
     state_->narrow.set_settings(settings);
-    if (!settings.is_speculative()) state_->next_poses.forget();
-    state_->moved.forget();
+    if (!settings.is_speculative()) {
+        state_->next = {};
+        state_->next_poses.forget();
+    }
+    state_->forget_moves();
 }
 const Settings& Scene::settings() const noexcept {
     return state_->narrow.settings();
@@ -547,6 +515,15 @@ std::uint32_t Scene::device_of_pair(std::size_t i) const {
         throw InputError("Scene::device_of_pair: there is no pair " + std::to_string(i) + "; the last step had "
                          + std::to_string(state_->pairs.size()));
     return static_cast<std::uint32_t>(state_->narrow.assignment().part_of(i));
+}
+void Scene::visit_near(const std::function<double(const Vec3& low, const Vec3& high)>& away,
+                       const std::function<double()>& farthest, const std::function<void(BodyId)>& visit) const {
+    State& s = *state_;
+    s.refresh_boxes();
+    const double by = 2 * s.world.rounding();
+    const Vec3 more{by, by, by};
+    s.world.tree().visit([&](const Box& box) { return away(box.low - more, box.high + more); }, farthest,
+                         [&](BodySlot slot) { visit(s.slots.id_in(slot)); });
 }
 std::optional<Distance> Scene::distance(BodyId a, BodyId b, double max) const {
     const PlacedBody& first = state_->existing(a, "Scene::distance");

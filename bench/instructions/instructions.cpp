@@ -265,7 +265,11 @@ void count_all() {
 
     const std::vector<Box> boxes = make_boxes(4096);
     std::vector<SlotPair> pairs;
-    count_host("broad_phase,boxes", boxes.size(), [&] { BroadPhase().find(executor, {boxes, {}}, pairs); });
+    count_host("broad_phase,boxes", boxes.size(), [&] {
+        BoxTree tree;
+        tree.build(executor, boxes);
+        BroadPhase().find(executor, tree, {boxes, {}}, pairs);
+    });
     count_host("make_shape,knot", small.mesh.triangles.size(), [&] { Shape::make(small.mesh); });
     const auto made = Shape::make(small.mesh);
     Executor one_thread(1);

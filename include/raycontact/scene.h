@@ -146,6 +146,12 @@ public:
     std::optional<Distance> distance(BodyId a, BodyId b, double max = any_distance) const;
 
 private:
+    /// Calls visit(body) for those whose boxes are not farther than farthest(), which it may lessen. away(low, high):
+    /// of a box, infinite for those that do not count.
+    RAYCONTACT_HIDDEN void visit_near(const std::function<double(const Vec3& low, const Vec3& high)>& away,
+                                      const std::function<double()>& farthest,
+                                      const std::function<void(BodyId)>& visit) const;
+
     struct RAYCONTACT_HIDDEN State;
     std::unique_ptr<State> state_;
 };

@@ -143,7 +143,9 @@ std::vector<PartPair> near_boxes(const std::vector<Part>& parts, double reach) {
         box.high = box.high + half;
     }
     std::vector<SlotPair> found;
-    BroadPhase().find(executor, {grown, {}}, found);
+    BoxTree tree;
+    tree.build(executor, grown);
+    BroadPhase().find(executor, tree, {grown, {}}, found);
     std::vector<PartPair> pairs;
     pairs.reserve(found.size());
     for (const auto& [a, b] : found) pairs.push_back({a, b, !boxes[a].touches(boxes[b])});

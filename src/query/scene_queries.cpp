@@ -34,49 +34,43 @@ double entry_of(const Box& box, const Vec3& origin, const Vec3& direction) {
     return enter <= leave * (1 + 1e-14) ? enter * (1 - 1e-14) : infinite;
 }
 
-struct Candidate {
-    double away; ///< of its box, metres, at most
-    BodyId body;
+/// The nearest of what is found on bodies; of equally near ones that with the lowest slot.
+template <class Found>
+class Nearest {
+public:
+    explicit Nearest(double max) : max_(max) {}
+
+    double farthest() const { return found_ ? found_->distance : max_; }
+    template <class Other>
+    void add(BodyId body, const std::optional<Other>& other) {
+        if (!other) return;
+        const bool nearer = !found_ || other->distance < found_->distance;
+        if (!nearer && (other->distance > found_->distance || !(body < found_->body))) return;
+        found_.emplace();
+        static_cast<Other&>(*found_) = *other;
+        found_->body = body;
+    }
+    const std::optional<Found>& found() const { return found_; }
+
+private:
+    double max_; ///< metres
+    std::optional<Found> found_;
 };
 
-// The bodies whose boxes are within `max`, nearest first, and of equally near ones the lowest slot.
-template <class Away>
-std::vector<Candidate> nearest_boxes(const Scene& scene, const Scene::Wanted& wanted, double max, Away&& away) {
-    std::vector<Candidate> candidates;
-    for (const BodyId body : scene.bodies()) {
-        if (wanted && !wanted(body)) continue;
-        const double metres = away(box_around(scene.shape(body), scene.pose(body)));
-        if (metres <= max && metres < infinite) candidates.push_back({metres, body});
+/// A ray that is sound, and how far it looks.
+struct CheckedRay {
+    Vec3 origin, along;
+    double max;
+    CheckedRay(const Vec3& from, const Vec3& direction, double most) : origin(from), max(most) {
+        check_place(origin, "raycast: the origin");
+        check_reach(max, "raycast");
+        along = checked_direction(direction);
     }
-    std::stable_sort(candidates.begin(), candidates.end(),
-                     [](const Candidate& p, const Candidate& q) { return p.away < q.away; });
-    return candidates;
-}
+    double away(const Vec3& low, const Vec3& high) const { return entry_of({low, high}, origin, along); }
+};
 
-// The nearest of what ask(body, max) finds on the candidates.
-template <class Found, class Ask>
-std::optional<Found> nearest_of(std::span<const Candidate> candidates, double max, Ask&& ask) {
-    std::optional<Found> nearest;
-    for (const Candidate& candidate : candidates) {
-        const double most = nearest ? nearest->distance : max;
-        if (candidate.away > most) break;
-        const auto found = ask(candidate.body, most);
-        if (!found) continue;
-        const bool nearer = !nearest || found->distance < most;
-        if (!nearer && !(candidate.body < nearest->body)) continue;
-        nearest.emplace();
-        static_cast<std::decay_t<decltype(*found)>&>(*nearest) = *found;
-        nearest->body = candidate.body;
-    }
-    return nearest;
-}
-
-std::vector<Candidate> boxes_on_ray(const Scene& scene, const Scene::Wanted& wanted, const Vec3& origin,
-                                    const Vec3& direction, double max) {
-    check_place(origin, "raycast: the origin");
-    check_reach(max, "raycast");
-    const Vec3 along = checked_direction(direction);
-    return nearest_boxes(scene, wanted, max, [&](const Box& box) { return entry_of(box, origin, along); });
+double away_from(const Vec3& point, const Vec3& low, const Vec3& high) {
+    return std::sqrt(Box{low, high}.squared_distance(point)) * (1 - 1e-14);
 }
 
 } // namespace
@@ -84,29 +78,42 @@ std::vector<Candidate> boxes_on_ray(const Scene& scene, const Scene::Wanted& wan
 std::optional<BodyRayHit> Scene::raycast(const Vec3& origin, const Vec3& direction, double max,
                                          const Wanted& wanted) const {
     const FloatEnvironment environment;
-    const auto candidates = boxes_on_ray(*this, wanted, origin, direction, max);
-    return nearest_of<BodyRayHit>(candidates, max, [&](BodyId body, double most) {
-        return raycontact::raycast(shape(body), pose(body), origin, direction, most);
-    });
+    const CheckedRay ray(origin, direction, max);
+    Nearest<BodyRayHit> nearest(max);
+    visit_near(
+        [&](const Vec3& low, const Vec3& high) { return ray.away(low, high); }, [&] { return nearest.farthest(); },
+        [&](BodyId body) {
+            if (wanted && !wanted(body)) return;
+            nearest.add(body, raycontact::raycast(shape(body), pose(body), origin, direction, nearest.farthest()));
+        });
+    return nearest.found();
 }
 
 bool Scene::raycast_any(const Vec3& origin, const Vec3& direction, double max, const Wanted& wanted) const {
     const FloatEnvironment environment;
-    const auto candidates = boxes_on_ray(*this, wanted, origin, direction, max);
-    return std::ranges::any_of(candidates, [&](const Candidate& candidate) {
-        return raycontact::raycast_any(shape(candidate.body), pose(candidate.body), origin, direction, max);
-    });
+    const CheckedRay ray(origin, direction, max);
+    bool any = false;
+    visit_near([&](const Vec3& low, const Vec3& high) { return ray.away(low, high); },
+               [&] { return any ? -infinite : max; },
+               [&](BodyId body) {
+                   if (wanted && !wanted(body)) return;
+                   any = raycontact::raycast_any(shape(body), pose(body), origin, direction, max);
+               });
+    return any;
 }
 
 std::optional<BodyClosestPoint> Scene::closest_point(const Vec3& point, double max, const Wanted& wanted) const {
     const FloatEnvironment environment;
     check_place(point, "closest_point: the point");
     check_reach(max, "closest_point");
-    const auto candidates = nearest_boxes(
-        *this, wanted, max, [&](const Box& box) { return std::sqrt(box.squared_distance(point)) * (1 - 1e-14); });
-    return nearest_of<BodyClosestPoint>(candidates, max, [&](BodyId body, double most) {
-        return raycontact::closest_point(shape(body), pose(body), point, most);
-    });
+    Nearest<BodyClosestPoint> nearest(max);
+    visit_near([&](const Vec3& low, const Vec3& high) { return away_from(point, low, high); },
+               [&] { return nearest.farthest(); },
+               [&](BodyId body) {
+                   if (wanted && !wanted(body)) return;
+                   nearest.add(body, raycontact::closest_point(shape(body), pose(body), point, nearest.farthest()));
+               });
+    return nearest.found();
 }
 
 std::vector<BodyId> Scene::overlaps(const Shape& other, const Pose& place, const Wanted& wanted) const {
@@ -114,11 +121,16 @@ std::vector<BodyId> Scene::overlaps(const Shape& other, const Pose& place, const
     check_placed(place, "pose of the mesh");
     const Box box = box_around(other, place);
     std::vector<BodyId> found;
-    for (const BodyId body : bodies()) {
-        if (wanted && !wanted(body)) continue;
-        if (!box_around(shape(body), pose(body)).touches(box)) continue;
-        if (intersects(shape(body), pose(body), other, place)) found.push_back(body);
-    }
+    visit_near(
+        [&](const Vec3& low, const Vec3& high) {
+            return box.touches({low, high}) ? 0 : infinite;
+        },
+        [] { return 0.0; },
+        [&](BodyId body) {
+            if ((wanted && !wanted(body)) || !box_around(shape(body), pose(body)).touches(box)) return;
+            if (intersects(shape(body), pose(body), other, place)) found.push_back(body);
+        });
+    std::ranges::sort(found, {}, &BodyId::slot);
     return found;
 }
 

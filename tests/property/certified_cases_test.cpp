@@ -355,7 +355,7 @@ TEST(certified, far_away_together) {
             b.translation = {x + 2, 0.8, 0.1};
             return std::pair(a, b);
         });
-    report("far away together", counts, 10);
+    report("far away together", counts, 4);
 }
 
 // A rotation that stretches by as much as is accepted makes rays reach farther than their vertices' exit distances say.

@@ -28,6 +28,21 @@ std::vector<SlotPair> all_pairs(const std::vector<Box>& boxes, const std::vector
     return pairs;
 }
 
+/// With the tree that it needs.
+struct Finder {
+    BoxTree tree;
+    BroadPhase broad_phase;
+    void find(Executor& executor, const BroadPhaseInput& input, std::vector<SlotPair>& pairs) {
+        tree.build(executor, input.boxes);
+        broad_phase.find(executor, tree, input, pairs);
+    }
+    bool update(Executor& executor, const BroadPhaseInput& input, std::span<const BodySlot> changed,
+                std::vector<SlotPair>& pairs) {
+        tree.update(executor, input.boxes, changed);
+        return broad_phase.update(executor, tree, input, changed, pairs);
+    }
+};
+
 TEST(BroadPhase, AgreesWithEveryPairTested) {
     std::mt19937 random(5);
     std::size_t found = 0;
@@ -42,7 +57,7 @@ TEST(BroadPhase, AgreesWithEveryPairTested) {
         if (round % 5 == 0) boxes[7] = boxes[0] = no_box;
         std::vector<SlotPair> pairs;
         Executor executor(1);
-        BroadPhase().find(executor, {boxes, {}}, pairs);
+        Finder().find(executor, {boxes, {}}, pairs);
         EXPECT_EQ(pairs, all_pairs(boxes));
         found += pairs.size();
     }
@@ -66,7 +81,7 @@ TEST(BroadPhase, AgreesWithEveryPairTestedWhileBoxesMove) {
         };
         for (BodySlot body = 0; body < 2500; ++body) move(boxes.emplace_back(), 20);
         boxes.push_back({{far, 0, 0}, {far + 15, 15, 1}});
-        BroadPhase kept, of_four, told;
+        Finder kept, of_four, told;
         std::vector<SlotPair> pairs, again, of_told;
         told.find(one, {boxes, filters}, of_told);
         std::vector<SlotPair> expected = all_pairs(boxes, filters);
@@ -103,7 +118,7 @@ TEST(BroadPhase, AgreesWithEveryPairTestedWhileBoxesMove) {
 
 TEST(BroadPhase, OneBoxOrNoneHasNoPair) {
     Executor executor(1);
-    BroadPhase broad_phase;
+    Finder broad_phase;
     std::vector<SlotPair> pairs{{1, 2}};
     broad_phase.find(executor, {}, pairs);
     EXPECT_TRUE(pairs.empty());

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 namespace raycontact {
@@ -46,22 +47,45 @@ protected:
         pose.translation = scaled(6, random_.in_ball());
         return pose;
     }
+    /// A few or many, by turns; others come and go, and now and then a step is made.
     void move_some() {
-        for (std::size_t i = 0; i < placed_.size(); i += 2) {
+        ++moves_;
+        for (std::size_t i = moves_ % 2; i < placed_.size(); i += moves_ % 2 == 0 ? 2 : 17) {
             placed_[i].pose = anywhere();
             scene_.set_pose(placed_[i].body, placed_[i].pose);
         }
+        if (moves_ % 3 == 0) {
+            const std::size_t gone = 8 + moves_ % 20;
+            scene_.remove(placed_[gone].body);
+            placed_.erase(placed_.begin() + std::ptrdiff_t(gone));
+        }
+        Settings settings = scene_.settings();
+        if (moves_ % 11 == 4) settings.speculative_margin = moves_ % 2 == 0 ? std::optional(0.05) : std::nullopt;
+        if (moves_ % 11 == 4) scene_.set_settings(settings);
+        if (moves_ % 5 == 1) scene_.find_contacts();
+        if (moves_ % 5 == 3) scene_.find_contacts(std::vector<Pair>{{placed_[0].body, placed_[1].body}});
+        for (std::size_t i = 0; i < (moves_ == 9 ? 900u : moves_ % 4); ++i) {
+            const auto shape = placed_[i % placed_.size()].shape;
+            const Pose pose = anywhere();
+            placed_.push_back({shape, pose, scene_.add(shape, pose)});
+        }
+        for (std::size_t i = 0; moves_ == 14 && i < 900; ++i) {
+            scene_.remove(placed_.back().body);
+            placed_.pop_back();
+        }
+        std::ranges::sort(placed_, {}, [](const Placed& p) { return p.body.slot; });
     }
 
     Random random_{41};
     Scene scene_;
     std::vector<Placed> placed_;
+    std::size_t moves_ = 0;
 };
 
 TEST_F(SceneQueries, RaysMeetTheClosestBody) {
     int hits = 0, others = 0;
     for (int i = 0; i < 600; ++i) {
-        if (i % 200 == 100) move_some(); // without a step
+        if (i % 25 == 24) move_some();
         const Vec3 origin = scaled(9, random_.in_ball()), direction = random_.direction();
         const double max = i % 2 == 0 ? any_distance : 4;
         const auto none_of = [&](BodyId body) { return !(body == placed_[4].body) && !(body == placed_[5].body); };
@@ -91,7 +115,7 @@ TEST_F(SceneQueries, RaysMeetTheClosestBody) {
 
 TEST_F(SceneQueries, TheClosestPointIsThatOfTheNearestBody) {
     for (int i = 0; i < 300; ++i) {
-        if (i == 150) move_some();
+        if (i % 15 == 14) move_some();
         const Vec3 point = scaled(9, random_.in_ball());
         std::optional<ClosestPoint> expected;
         BodyId body{};
@@ -113,7 +137,7 @@ TEST_F(SceneQueries, OverlapsAreTheBodiesThatIntersect) {
     const auto probe = Shape::make(box_mesh({1.1, 0.7, 0.3}));
     std::size_t overlapping = 0;
     for (int i = 0; i < 300; ++i) {
-        if (i == 150) move_some();
+        if (i % 15 == 14) move_some();
         const Pose pose = anywhere();
         std::vector<BodyId> expected;
         for (const Placed& p : placed_)
@@ -124,6 +148,21 @@ TEST_F(SceneQueries, OverlapsAreTheBodiesThatIntersect) {
         EXPECT_EQ(scene_.overlaps(*probe, pose, first).size(), expected.empty() ? 0u : 1u) << i;
     }
     EXPECT_GT(overlapping, 50u);
+}
+
+TEST_F(SceneQueries, MayRunAtOnceAfterBodiesMoved) {
+    move_some();
+    const Vec3 origin{9, 0, 0}, direction{-1, 0.02, 0.01};
+    std::vector<std::optional<BodyRayHit>> found(4);
+    {
+        std::vector<std::jthread> threads;
+        for (auto& one : found) threads.emplace_back([&] { one = scene_.raycast(origin, direction); });
+    }
+    for (const auto& one : found) {
+        ASSERT_EQ(one.has_value(), found[0].has_value());
+        if (!one) continue;
+        EXPECT_EQ(one->distance, found[0]->distance);
+    }
 }
 
 TEST_F(SceneQueries, DistanceOfTwoBodies) {

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "broadphase/box_tree.h"
+#include "moved_bodies.h"
+#include "pairs/directed_pairs.h"
+
+#include <raycontact/settings.h>
+
+#include <span>
+#include <vector>
+
+namespace raycontact {
+
+/// The boxes of a scene's bodies in the world, and a tree over them, for the broad phase and for queries.
+class WorldBoxes {
+public:
+    /// What makes a box another one: a body that is new, gone or elsewhere, a shape, settings.
+    void make_room(std::size_t slots) { moved_.make_room(slots); }
+    void mark(BodySlot body) noexcept { moved_.mark(body); }
+    void add_shape(const Shape& shape);
+    void remove_shape(const Shape& shape);
+    void forget() noexcept { moved_.forget(); }
+
+    /// next: where bodies are expected, whose boxes then hold the way there; empty: nowhere. Both by slot.
+    void update(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pose> next,
+                const Settings& settings);
+    /// Whether an update() would change nothing.
+    bool is_up_to_date() const { return reach_known_ && moved_.is_next(seen_) && moved_.list().empty(); }
+
+    /// By slot, and some more; no_box where there is no body.
+    std::span<const Box> boxes() const { return boxes_; }
+    const BoxTree& tree() const { return tree_; }
+    BoxTree& tree() { return tree_; }
+    /// Whether there are more or fewer than at the last accept().
+    bool is_resized() const { return is_resized_; }
+    /// Else, those that are others than then, each once.
+    std::span<const BodySlot> changed() const { return changed_; }
+    void accept();
+    /// How far a vertex as its file has it can be from the box of its shape, metres.
+    double rounding() const { return rounding_; }
+    void trim() { boxes_.shrink_to_fit(); }
+
+private:
+    void measure_reach(std::span<const PlacedBody> bodies);
+    Box box_of(const PlacedBody& body, const Pose* next, const Settings& settings) const;
+    void resize(std::size_t slots);
+    void remake(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pose> next,
+                const Settings& settings);
+
+    MovedBodies moved_; ///< since the last update()
+    MovedBodies::Seen seen_ = 0;
+    float reach_ = 0; ///< how far beyond the box of an open mesh a vertex can lie and still reach it, metres
+    double rounding_ = 0;
+    bool reach_known_ = true, is_resized_ = true;
+    std::vector<Box> boxes_;
+    BoxTree tree_;
+    std::vector<char> is_other_, is_changed_; ///< by slot
+    std::vector<BodySlot> others_, changed_;  ///< others_: than before the last update()
+};
+
+} // namespace raycontact
