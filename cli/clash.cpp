@@ -192,6 +192,7 @@ void read_excluded(const std::string& file, ClashOptions& how) {
         throw InputError("--exclude " + file + ": cannot be read; give a file of pairs of names, or parent-child");
     std::string line;
     for (std::size_t number = 1; std::getline(lines, line); ++number) {
+        if (number == 1 && line.starts_with("\xef\xbb\xbf")) line.erase(0, 3); // as spreadsheets write it
         if (line.ends_with('\r')) line.pop_back();
         if (line.empty() || line.starts_with('#')) continue;
         how.exclude.push_back(two_names(line, fmt::format("{}:{}", file, number)));
@@ -308,7 +309,7 @@ void add_clash(CLI::App& app) {
     command
         ->add_option("FILES", options->files,
                      "mesh files; parts are nodes of glTF, objects that a 3MF places, objects or groups of OBJ, solids "
-                     "of a text STL")
+                     "of STL")
         ->required();
     // One word each, so that FILES may follow.
     command
