@@ -185,6 +185,14 @@ TEST(Corpus, ThreeMf) {
             {"production", "far: 4, far: 4"},
         });
 }
+#else
+TEST(Corpus, ABuildWithout3mfSaysSo) {
+    expect("3mf", {{"model", "refused: 3MF is not read by this build of the library (RAYCONTACT_3MF is off); convert "
+                             "it to GLB or STL"}});
+    const TempFolder folder;
+    EXPECT_EQ(words_of(folder.write("m.stp", "x")),
+              "refused: unknown ending '.stp'; known are .obj .stl .ply .off .gltf .glb");
+}
 #endif
 
 } // namespace
