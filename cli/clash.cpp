@@ -192,6 +192,7 @@ void read_excluded(const std::string& file, ClashOptions& how) {
         throw InputError("--exclude " + file + ": cannot be read; give a file of pairs of names, or parent-child");
     std::string line;
     for (std::size_t number = 1; std::getline(lines, line); ++number) {
+        if (number == 1 && line.starts_with("\xef\xbb\xbf")) line.erase(0, 3); // as spreadsheets write it
         if (line.ends_with('\r')) line.pop_back();
         if (line.empty() || line.starts_with('#')) continue;
         how.exclude.push_back(two_names(line, fmt::format("{}:{}", file, number)));
@@ -305,10 +306,11 @@ void add_clash(CLI::App& app) {
     CLI::App* command = app.add_subcommand("clash", "Find the parts of an assembly that intersect, or are too near");
     auto options = std::make_shared<Options>();
     constexpr double most = 1e9;
+    const auto with_3mf = [](const char* words) { return RAYCONTACT_READS_3MF ? words : ""; };
     command
         ->add_option("FILES", options->files,
-                     "mesh files; parts are nodes of glTF, objects that a 3MF places, objects or groups of OBJ, solids "
-                     "of a text STL")
+                     fmt::format("mesh files; parts are nodes of glTF,{} objects or groups of OBJ, solids of STL",
+                                 with_3mf(" objects that a 3MF places,")))
         ->required();
     // One word each, so that FILES may follow.
     command
@@ -333,9 +335,9 @@ void add_clash(CLI::App& app) {
     add_length("--ignore-touching", options->ignore_touching,
                "leave out clashes no deeper than this; 0: those that only touch. Those without a depth stay");
     command
-        ->add_option(
-            "--unit", options->unit,
-            "of the files, and so of all lengths: m, mm, cm or in; 3MF says its own and is brought to this one")
+        ->add_option("--unit", options->unit,
+                     fmt::format("of the files, and so of all lengths: m, mm, cm or in{}",
+                                 with_3mf("; 3MF says its own and is brought to this one")))
         ->type_name("UNIT")
         ->check([](const std::string& word) {
             if (std::ranges::any_of(units, [&](const Unit& unit) { return word == unit.name; })) return std::string();

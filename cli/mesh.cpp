@@ -113,7 +113,9 @@ void check_meshes(const MeshOptions& options) {
 } // namespace
 
 void add_mesh(CLI::App& app) {
-    CLI::App* command = app.add_subcommand("mesh", "Check mesh files: OBJ, STL, PLY, OFF, glTF, GLB or 3MF");
+    CLI::App* command =
+        app.add_subcommand("mesh", RAYCONTACT_READS_3MF ? "Check mesh files: OBJ, STL, PLY, OFF, glTF, GLB or 3MF"
+                                                        : "Check mesh files: OBJ, STL, PLY, OFF, glTF or GLB");
     auto options = std::make_shared<MeshOptions>();
     command->add_option("FILE", options->files, "the mesh files; the last lines say what each is good for")->required();
     command->add_flag("--json", options->json, "print one JSON object a file and line on stdout");

@@ -16,7 +16,7 @@ packages_core=( # scripts/test core: the library without OpenCL devices, and its
 )
 packages_demo=(glmark2-data) # the Stanford bunny
 packages_test=(libgtest-dev libtinyobjloader-dev libtinygltf-dev libassimp-dev libcgal-dev libeigen3-dev pocl-opencl-icd locales
-    assimp-testmodels # mesh files of other programs
+    assimp-testmodels libcgal-demo # mesh files of other programs
     python3-pip # brings the CUDA compiler that the kernels are checked with
     chromium python3) # open the pages
 packages_bench=(libfcl-dev libode-dev)                                # peers of `raycontact-bench peers`, both optional

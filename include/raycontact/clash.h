@@ -68,7 +68,7 @@ struct ClashOptions {
     std::vector<std::array<std::string, 2>> exclude{};
     bool exclude_parent_child = false; ///< leaves out pairs of a part and its AssemblyPart::parent
     double clearance = 0;              ///< metres; pairs not farther apart are `near`
-    double tolerance = 0;              ///< metres; depths and gaps up to it are `touching`
+    double tolerance = 0;              ///< metres; gaps, and depths but of two open parts, up to it are `touching`
     bool volumes = false;              ///< asks for Clash::volume: seconds for parts of 100 000 triangles
     std::uint32_t threads = 0;         ///< 0: one per core; no result depends on it
     /// Told what is done, from 0 to 1; from any thread, but from one at a time.

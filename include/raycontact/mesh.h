@@ -54,8 +54,8 @@ RAYCONTACT_API Mesh make_mesh(std::span<const float> coordinates, std::span<cons
 /// differ in their last digits: they get one place, which prepare_mesh() welds. Each one goes to the nearest of those
 /// that stay, less than `length` away; no two that stay are nearer than `length`. Which stay depends on the coordinates
 /// alone, not on the order of the file. Indices stay. Triangles that lose their area are dropped and counted by
-/// prepare_mesh(). Throws InputError naming the mesh for another length and for coordinates that prepare_mesh()
-/// refuses.
+/// prepare_mesh(). A mesh may lie as far from the origin as doubles tell its vertices apart. Throws InputError naming
+/// the mesh for another length, for one below the last digit of its largest coordinate, and as load_mesh() does.
 RAYCONTACT_API Mesh weld_mesh(Mesh mesh, double length);
 
 /// What a mesh is, after the repairs it names.

@@ -131,8 +131,9 @@ void set_kind(Answer& answer, const Part& a, const Part& b, const ClashOptions& 
         clash.kind = ClashKind::touching;
         clash.depth = 0;
     };
-    if (clash.kind != ClashKind::duplicate && solid && clash.contacts > 0 && *clash.depth <= options.tolerance * slack)
-        return touch();
+    // Contacts of two open parts do not tell how deep they cross.
+    const bool tells = clash.contacts > 0 && (a.shape->has_inside() || b.shape->has_inside());
+    if (clash.kind != ClashKind::duplicate && tells && *clash.depth <= options.tolerance * slack) return touch();
     const Overlap overlap = overlap_of(a, b);
     clash.box = axis_box(overlap.box);
     if (clash.kind != ClashKind::duplicate)
@@ -258,9 +259,7 @@ const char* to_string(ClashKind kind) {
 
 ClashReport find_clashes(std::span<const AssemblyPart> given, const ClashOptions& options) {
     check_options(options);
-    if (given.size() < 2)
-        throw InputError("clash: " + std::to_string(given.size())
-                         + " part given; give several");
+    if (given.size() < 2) throw InputError("clash: " + std::to_string(given.size()) + " part given; give several");
     for (const AssemblyPart& part : given) {
         if (!part.mesh) throw InputError("clash: " + part.name + " has no mesh");
         check_pose(part.pose, part.name.c_str());

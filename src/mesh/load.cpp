@@ -29,11 +29,19 @@ constexpr std::array formats{Format{".obj", &read_obj, &read_obj_parts},
                              Format{".glb", &read_gltf, &read_gltf_parts},
                              Format{".3mf", &read_3mf, &read_3mf_parts}};
 
+constexpr const char* if_3mf([[maybe_unused]] const char* words) {
+#ifdef RAYCONTACT_3MF
+    return words;
+#else
+    return "";
+#endif
+}
+
 const Format& format_of(const InputFile& file) {
     const std::string ending = lower_case(file.path.extension().string());
     for (const Format& format : formats)
         if (ending == format.ending) return format;
-    file.fail("unknown ending " + in_quotes(ending) + "; known are .obj .stl .ply .off .gltf .glb .3mf");
+    file.fail("unknown ending " + in_quotes(ending) + "; known are .obj .stl .ply .off .gltf .glb" + if_3mf(" .3mf"));
 }
 
 Mesh read_mesh(const Format& format, const InputFile& file, const std::string& name) {

@@ -42,6 +42,7 @@ struct Object {
     std::vector<Component> components;
     std::map<std::string, std::size_t> left_out; ///< elements that are not read, by name
     bool is_open = false;                        ///< is being placed
+    bool is_placed = false;
 };
 
 struct Model {
@@ -237,6 +238,7 @@ public:
     Mesh read_mesh() {
         Mesh mesh;
         for_each_placed_object([&](const Object& object, const Placement& placement) { add(mesh, object, placement); });
+        add_left_out(mesh.repairs);
         return mesh;
     }
 
@@ -259,6 +261,7 @@ public:
             }
             parts.push_back({object.name, made, pose});
         });
+        add_left_out(notes);
         return parts;
     }
 
@@ -306,9 +309,22 @@ private:
             fail("is made of " + object.left_out.begin()->first + ", which is not read; export a mesh");
         const Placement placement = outer.after(component.placement);
         visit(object, placement);
-        object.is_open = true;
+        object.is_open = object.is_placed = true;
         for (const Component& inner : object.components) place(inner, placement, depth + 1, visit);
         object.is_open = false;
+    }
+
+    /// The objects that nothing places, and those that have nothing.
+    void add_left_out(std::vector<std::string>& notes) const {
+        std::string unplaced, empty;
+        for (const auto& [key, model] : models_)
+            for (const auto& [id, object] : model.objects) {
+                if (object.is_placed && !(object.mesh.triangles.empty() && object.components.empty())) continue;
+                std::string& names = object.is_placed ? empty : unplaced;
+                names += (names.empty() ? "" : ", ") + in_quotes(object.name);
+            }
+        if (!unplaced.empty()) notes.push_back("left out " + unplaced + ": not in the build");
+        if (!empty.empty()) notes.push_back("left out what has no triangles: " + empty);
     }
 
     void add(Mesh& mesh, const Object& object, const Placement& placement) {

@@ -19,6 +19,10 @@ namespace {
 
 constexpr std::size_t header_size = 84, facet_size = 50;
 
+std::string unnamed_solid(std::size_t number) {
+    return "solids[" + std::to_string(number) + "]";
+}
+
 std::uint32_t announced_facets(const InputFile& file) {
     return read_bytes<std::uint32_t>(file.bytes.data() + 80);
 }
@@ -39,29 +43,63 @@ bool has_payloads(const InputFile& file) {
     return at == file.bytes.size();
 }
 
-Mesh read_facets(const InputFile& file, std::size_t facets, bool payloads) {
-    Mesh mesh;
-    mesh.vertices.reserve(3 * facets);
-    mesh.triangles.reserve(facets);
-    std::size_t facet = header_size;
-    for (std::size_t i = 0; i < facets; ++i) {
+/// Facets that follow each other.
+struct Run {
+    std::size_t begin, count; ///< byte of the first
+};
+
+/// A run for each of the files that were joined end to end to this one; none where they do not fill it exactly.
+std::vector<Run> joined_files(const InputFile& file) {
+    std::vector<Run> runs;
+    for (std::size_t at = 0; at < file.bytes.size();) {
+        const std::size_t left = file.bytes.size() - at;
+        if (left < header_size) return {};
+        const std::size_t count = read_bytes<std::uint32_t>(file.bytes.data() + at + 80);
+        if (count == 0 || count > (left - header_size) / facet_size) return {};
+        runs.push_back({at + header_size, count});
+        at += header_size + count * facet_size;
+    }
+    return runs;
+}
+
+void add_facets(Mesh& mesh, const InputFile& file, const Run& run, bool payloads) {
+    std::size_t facet = run.begin;
+    for (std::size_t i = 0; i < run.count; ++i) {
         const char* const corners = file.bytes.data() + facet + 12; // past the normal
-        const auto first = static_cast<std::uint32_t>(3 * i);
+        const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
         for (std::size_t k = 0; k < 3; ++k) {
             const char* const at = corners + 12 * k;
             const Vec3 point{read_bytes<float>(at), read_bytes<float>(at + 4), read_bytes<float>(at + 8)};
-            if (!is_finite(point)) file.fail("facet " + std::to_string(i) + ": a coordinate is not finite");
+            if (!is_finite(point))
+                file.fail("facet " + std::to_string(mesh.triangles.size()) + ": a coordinate is not finite");
             mesh.vertices.push_back(point);
         }
         mesh.triangles.push_back({first, first + 1, first + 2});
         facet += facet_size + (payloads ? payload_at(file, facet) : 0);
     }
+}
+
+Mesh read_facets(const InputFile& file, std::size_t facets, bool payloads) {
+    Mesh mesh;
+    mesh.vertices.reserve(3 * facets);
+    mesh.triangles.reserve(facets);
+    add_facets(mesh, file, {header_size, facets}, payloads);
     return mesh;
 }
 
-Mesh read_binary(const InputFile& file) {
+Mesh read_binary(const InputFile& file, Groups& solids) {
+    if (const std::vector<Run> runs = joined_files(file); !runs.empty()) {
+        Mesh mesh;
+        mesh.vertices.reserve(3 * (file.bytes.size() / facet_size));
+        mesh.triangles.reserve(file.bytes.size() / facet_size);
+        std::size_t number = 0;
+        for (const Run& run : runs) {
+            solids.begin(unnamed_solid(number++), mesh.triangles.size());
+            add_facets(mesh, file, run, false);
+        }
+        return mesh;
+    }
     const std::size_t announced = announced_facets(file), size = file.bytes.size() - header_size;
-    if (size == announced * facet_size) return read_facets(file, announced, false);
     if (has_payloads(file)) {
         Mesh mesh = read_facets(file, announced, true);
         mesh.repairs.push_back("skipped the attributes behind the facets, "
@@ -94,7 +132,7 @@ public:
         for (std::string_view word = first_word(); !word.empty(); word = scanner_.word()) {
             if (!same(word, "solid")) complain(word, "solid");
             std::string name = printable(scanner_.rest_of_line());
-            if (name.empty()) name = "solids[" + std::to_string(solids_) + "]";
+            if (name.empty()) name = unnamed_solid(solids_);
             ++solids_;
             groups_.begin(std::move(name), mesh_.triangles.size());
             while (read_facet()) {
@@ -173,12 +211,16 @@ bool is_binary(const InputFile& file) {
            || (!utf16 && (announced < 0x09000000u || announced == 0xffffffffu));
 }
 
-/// With the solids of a text file.
+/// With its solids.
 std::pair<Mesh, Groups> read_solids(const InputFile& file) {
     if (file.bytes.size() < header_size)
         file.fail("has " + counted(file.bytes.size(), "byte")
                   + ", fewer than an STL file with a facet; it is truncated or of another format");
-    if (is_binary(file)) return {read_binary(file), {}};
+    if (is_binary(file)) {
+        Groups solids;
+        Mesh mesh = read_binary(file, solids);
+        return {std::move(mesh), std::move(solids)};
+    }
     InputFile room;
     AsciiStl text(as_utf8(file, room));
     Mesh mesh = text.read();

@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -117,6 +118,13 @@ bool closes(const std::vector<Edge>& border, const std::vector<std::uint32_t>& t
     return true;
 }
 
+/// How far the numbers lie apart that the largest coordinate is one of.
+double step_of(const std::vector<Vec3>& places) {
+    double most = 0;
+    for (const auto& [x, y, z] : places) most = std::max({most, std::fabs(x), std::fabs(y), std::fabs(z)});
+    return std::nextafter(most, std::numeric_limits<double>::infinity()) - most;
+}
+
 } // namespace
 
 Mesh weld_mesh(Mesh mesh, double length) {
@@ -124,7 +132,10 @@ Mesh weld_mesh(Mesh mesh, double length) {
     if (!(length >= 1e-12 && length <= greatest_coordinate))
         throw InputError(name + ": cannot be welded by " + text_of(length) + " m; give a length from 1e-12 to 1e9");
     check_mesh(mesh, name);
-    check_reach(mesh, name);
+    // So cells of the grid have numbers of their own, too, however far the mesh is from the origin.
+    if (const double step = step_of(mesh.vertices); length < step)
+        throw InputError(name + ": cannot be welded by " + text_of(length) + " m: as far from the origin as it is, "
+                         + "coordinates have no digits below " + text_of(step) + " m; give a greater length");
     std::vector<Vec3> places(mesh.vertices);
     for (Vec3& p : places) p = p + Vec3{}; // turns -0 into 0
     const std::vector<std::uint32_t> lowest = lowest_equal(places),
@@ -156,9 +167,10 @@ std::optional<double> closing_weld(const PreparedMesh& mesh) {
     ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
     // Further apart than that, corners differ in more than their last digits.
     const double most = 1e-4 * raycontact::length(mesh.report.box_max - mesh.report.box_min);
+    const double step = step_of(mesh.vertices);
     for (int power = -12; power_of_ten(power) <= most; ++power) {
         const double length = power_of_ten(power);
-        if (length < 1e-6 * most || !closes(border, joined(mesh.vertices, ends, length))) continue;
+        if (length < std::max(1e-6 * most, step) || !closes(border, joined(mesh.vertices, ends, length))) continue;
         // Vertices away from the border may have a say, too.
         const Mesh welded = weld_mesh({mesh.name, mesh.vertices, mesh.triangles}, length);
         if (prepare_mesh(welded, Repair::allowed, Nesting::as_wound, Check::topology).report.closed) return length;

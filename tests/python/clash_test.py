@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Clashes of an assembly from Python."""
 
+import json
+
 import meshes
 import numpy as np
 import pytest
 import raycontact as rc
+from raycontact.__main__ import main
 
 BOX = rc.Mesh(*meshes.box(), name="box")
 
@@ -62,6 +65,61 @@ def test_pairs_are_chosen():
     for options in [*bad, {"tolerance": float("nan")}]:
         with pytest.raises(rc.InputError):
             pairs(**options)
+
+
+def test_corners_that_differ_in_their_last_digits_are_welded():
+    vertices, faces = meshes.box()
+    loose = np.asarray(vertices)[np.asarray(faces)].reshape(-1, 3)
+    loose = loose + np.random.default_rng(1).uniform(-1e-8, 1e-8, loose.shape)
+    soup = rc.Mesh(loose, np.arange(len(loose)).reshape(-1, 3), name="soup")
+    utm = np.array([691234567.25, 5334567890.5, 512125])  # millimetres
+    parts = [("a", soup, None), ("b", soup, rc.pose([0.75, 0, 0]))]
+    assert rc.clash(parts).open == ["a", "b"]
+    found = rc.clash(parts, weld=1e-6)
+    assert not found.open and found[0].depth == pytest.approx(0.25, abs=1e-5)
+    assert not rc.clash(parts, scale=1000, weld=1e-3).open
+    metre = rc.Mesh(1000 * loose + utm, np.arange(len(loose)).reshape(-1, 3))
+    found = rc.clash([metre, ("b", metre, rc.pose([750, 0, 0]))], weld=1e-3)
+    assert not found.open and found[0].depth == pytest.approx(250, abs=1e-2)
+    for weld in [0, 2e9, float("nan")]:
+        with pytest.raises(rc.InputError):
+            rc.clash(parts, weld=weld)
+    with pytest.raises(rc.InputError, match="no digits below"):
+        rc.clash([metre, metre], weld=1e-7)
+
+
+def in_shell(capsys, *words):
+    status = main(["clash", *[str(word) for word in words]])
+    told = capsys.readouterr()
+    return status, told.out, told.err
+
+
+def test_pairs_are_excluded_and_parts_welded_from_the_shell(tmp_path, capsys):
+    vertices, faces = meshes.box()
+    groups = []
+    for i in range(3):
+        groups += [f"o box {i}"] + [f"v {x + 0.75 * i} {y} {z}" for x, y, z in vertices]
+        groups += ["f " + " ".join(str(v + 1 + len(vertices) * i) for v in face) for face in faces]
+    file, pairs = tmp_path / "row.obj", tmp_path / "pairs.csv"
+    file.write_text("\n".join(groups) + "\n")
+
+    def clashing(text, *words):
+        pairs.write_bytes(text)
+        status, out, err = in_shell(capsys, file, "--json", "--exclude", pairs, *words)
+        assert status == 0, err
+        return [(one["a"], one["b"]) for one in map(json.loads, out.splitlines())]
+
+    assert clashing(b"") == [("box 0", "box 1"), ("box 1", "box 2")]
+    assert clashing(b'\xef\xbb\xbf"box 2",box ?\r\n\r\n# not these\r\n') == [("box 0", "box 1")]
+    assert clashing(b"box 0,*\n", "--exclude", "parent-child", "--weld", "1e-6") == [("box 1", "box 2")]
+    bad = [(b"box 0\n", "pairs.csv:1: is not two names"), (b'#\n"box 0,box 1\n', "pairs.csv:2: is not two names")]
+    for text, says in [*bad, (b"box 0,\n", "pairs.csv:1"), (b"box 0,no\n", "no"), (b"\xff,x", "cannot be read")]:
+        pairs.write_bytes(text)
+        status, out, err = in_shell(capsys, file, "--exclude", pairs)
+        assert status == 2 and says in err and not out
+    status, _, err = in_shell(capsys, file, "--exclude", tmp_path / "none.csv")
+    assert status == 2 and "none.csv: cannot be read" in err and "parent-child" in err
+    assert in_shell(capsys, file, "--weld", "0")[0] == 2
 
 
 def test_clashes_are_the_pairs_that_intersect():

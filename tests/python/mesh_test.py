@@ -83,7 +83,12 @@ def test_a_3mf_file_is_an_assembly_in_metres(tmp_path):
             "_rels/.rels", f'<Relationships><Relationship Type="{kind}" Target="/a.model"/></Relationships>'
         )
         package.writestr("a.model", model)
-    parts = rc.load_assembly(tmp_path / "two.3mf", weld=1e-6)
+    try:
+        parts = rc.load_assembly(tmp_path / "two.3mf", weld=1e-6)
+    except rc.InputError as error:
+        if "RAYCONTACT_3MF is off" not in str(error):
+            raise
+        pytest.skip(str(error))
     assert [part.name for part in parts] == ["cube", "cube"] and parts[0].mesh is parts[1].mesh
     assert parts[1].pose[:3, 3] == pytest.approx([2, 0, 0])
     assert rc.Shape(parts[0].mesh).report.volume == pytest.approx(1, abs=1e-6)

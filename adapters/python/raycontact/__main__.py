@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import argparse
+import csv
 import json
 import sys
 from collections.abc import Callable
@@ -48,10 +49,38 @@ def _collide(options: argparse.Namespace) -> int:
     return 3 if options.check and apart.distance == 0 else 0
 
 
+def _excluded(given: str) -> list[str | tuple[str, str]]:
+    """A file has two names a line, as CSV; empty lines and those that begin with # say nothing."""
+    if given == "parent-child":
+        return [given]
+    try:
+        with open(given, encoding="utf-8-sig") as file:
+            lines = file.read().split("\n")
+    except (OSError, UnicodeDecodeError) as error:
+        raise rc.InputError(
+            f"--exclude {given}: cannot be read ({error}); give a file of pairs of names, or parent-child"
+        ) from None
+    pairs: list[str | tuple[str, str]] = []
+    for number, line in enumerate(lines, 1):
+        if not line or line.startswith("#"):
+            continue
+        try:
+            names = next(csv.reader([line], strict=True))
+        except csv.Error:  # a quote that does not end
+            names = []
+        if len(names) != 2 or not all(names):
+            words = "is not two names with a comma between; put names with a comma in quotes"
+            raise rc.InputError(f"{given}:{number}: {words}")
+        pairs.append((names[0], names[1]))
+    return pairs
+
+
 def _clash(options: argparse.Namespace) -> int:
+    exclude = [pair for given in options.exclude for pair in _excluded(given)]
     found = rc.clash(
-        options.files, scale=options.scale, against=options.against, clearance=options.clearance,
-        tolerance=options.tolerance, ignore_touching=options.ignore_touching, progress=sys.stderr.isatty(),
+        options.files, scale=options.scale, weld=options.weld, against=options.against, exclude=exclude,
+        clearance=options.clearance, tolerance=options.tolerance, ignore_touching=options.ignore_touching,
+        progress=sys.stderr.isatty(),
     )  # fmt: skip
     for fault in found.faults:
         print(f"not checked: {fault.name}: {fault.why}", file=sys.stderr)
@@ -103,9 +132,12 @@ def main(arguments: list[str] | None = None) -> int:
     clash = command("clash", _clash, "Find the parts of an assembly that intersect")
     for sub in (mesh, collide, clash):
         sub.add_argument("--scale", type=float, default=1.0, help="multiplies coordinates; 0.001 for millimetres")
-    words = "parts are nodes of glTF, objects or groups of OBJ, solids of a text STL"
+    words = "parts are nodes of glTF, objects or groups of OBJ, solids of STL"
     clash.add_argument("files", nargs="+", metavar="FILE", help=words)
     clash.add_argument("--against", action="append", metavar="SET", help="test these (* and ?) against all others")
+    words = "leave out: a file of two such names a line, as CSV; or parent-child, of the nodes of glTF"
+    clash.add_argument("--exclude", action="append", default=[], metavar="PAIRS", help=words)
+    clash.add_argument("--weld", type=float, metavar="LENGTH", help="join vertices nearer than this, after --scale")
     clash.add_argument("--clearance", type=float, default=0.0, metavar="LENGTH", help="also find those so near")
     clash.add_argument("--tolerance", type=float, default=0.0, metavar="LENGTH", help="up to this they are touching")
     clash.add_argument("--ignore-touching", type=float, metavar="LENGTH", help="leave out clashes no deeper, metres")

@@ -130,6 +130,7 @@ def clash(
     assembly: Any,
     *,
     scale: float = 1.0,
+    weld: Optional[float] = None,
     against: Union[str, Sequence[str], None] = None,
     exclude: Iterable[Union[str, tuple[str, str]]] = (),
     clearance: float = 0.0,
@@ -146,19 +147,20 @@ def clash(
         trimesh. Parts stay where they are placed.
     scale: what coordinates and places are multiplied by; 0.001 makes metres of millimetres. Without it all lengths are
         in the unit of the parts.
+    weld: as `Mesh` has it, of each part by itself, after scale.
     against: names of parts or files, "*" and "?" stand for any: they are tested against all others, and no more.
     exclude: pairs of such names that are left out; and "parent-child", for nodes of a glTF file and those under them.
     clearance: parts that are no farther apart are found, too: kind "near", metres.
-    tolerance: depths and gaps up to it are "touching", metres.
+    tolerance: gaps, and depths but of two open parts, up to it are "touching", metres.
     volumes: asks for the volume that two parts share (slow).
     ignore_touching: leaves out clashes no deeper than this, metres; 0: those that only touch. None leaves out none.
     progress: True draws a bar if tqdm is installed; or a function of what is done, from 0 to 1.
 
     Raises InputError for files that cannot be read, for fewer than two parts, for poses that are not rigid, for names
-    that match nothing and for lengths below 0.
+    that match nothing, for lengths below 0 and for a weld that `Mesh` refuses.
     """
     given, files, parents = _parts_of(assembly)
-    parts = scaled_parts(given, scale)
+    parts = scaled_parts(given, scale, weld)
     if len(parts) < 2:
         raise InputError(
             f"clash: {len(parts)} part given; give several, or a file that has parts: nodes, objects, groups or solids"

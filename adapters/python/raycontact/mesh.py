@@ -42,7 +42,7 @@ class Mesh:
 
     Raises InputError (a ValueError) naming the file or the element to blame: a file that is missing, unreadable or
     damaged, no triangles, a vertex that does not exist, a coordinate that is not finite, arrays of other shapes, a
-    weld not from 1e-12 to 1e9.
+    weld not from 1e-12 to 1e9, or below the last digit of the largest coordinate.
     """
 
     @overload
@@ -196,7 +196,7 @@ def load_assembly(
     file: Union[str, os.PathLike[str]], *, scale: float = 1.0, weld: Optional[float] = None
 ) -> list[AssemblyPart]:
     """Of a glTF file each node of its scene that places a mesh, in node order; of a 3MF file each object with a mesh as
-    often as its build places it; of OBJ its objects or groups, of text STL its solids; of any other file its one mesh.
+    often as its build places it; of OBJ its objects or groups, of STL its solids; of any other file its one mesh.
     What is left out is told by a UserWarning that names it.
 
     scale: what coordinates and places are multiplied by; 0.001 for a file in millimetres. weld: as `Mesh` has it, of

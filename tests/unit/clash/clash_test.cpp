@@ -244,6 +244,34 @@ TEST(Clash, OpenPartsAreMarked) {
     EXPECT_EQ(report.open, std::vector<std::size_t>{1});
 }
 
+TEST(Clash, ToleranceHoldsForOpenPartsWhereTheirDepthIsKnown) {
+    const auto sheet = [](const Vec3& o, const Vec3& u, const Vec3& v) {
+        auto mesh = std::make_shared<Mesh>();
+        for (const auto& [a, b] : {std::pair(0, 0), std::pair(1, 0), std::pair(1, 1), std::pair(0, 1)})
+            mesh->vertices.push_back({o.x + a * u.x + b * v.x, o.y + a * u.y + b * v.y, o.z + a * u.z + b * v.z});
+        mesh->triangles = {{0, 1, 2}, {0, 2, 3}};
+        return AssemblyPart{"sheet", mesh, {}};
+    };
+    const AssemblyPart floor = sheet({-5, -5, 0}, {10, 0, 0}, {0, 10, 0});
+    const AssemblyPart post = box("post", {-0.5, -0.5, -0.001}, {0.5, 0.5, 2});
+    const AssemblyPart pipe = box("pipe", {-0.05, -0.05, -3}, {0.05, 0.05, 2});
+    const auto kind = [](const AssemblyPart& a, const AssemblyPart& b, double tolerance) {
+        ClashOptions options;
+        options.tolerance = tolerance;
+        const auto found = clashes_of({a, b}, options);
+        EXPECT_EQ(found.size(), 1u);
+        return found.at(0).kind;
+    };
+    for (const bool turned : {false, true}) {
+        const AssemblyPart &a = turned ? post : floor, &b = turned ? floor : post;
+        EXPECT_EQ(kind(a, b, 0.0009), ClashKind::overlapping);
+        EXPECT_EQ(kind(a, b, 0.0011), ClashKind::touching);
+    }
+    // It goes through: no depth says how far. Nor does one of two sheets.
+    EXPECT_EQ(kind(floor, pipe, 1), ClashKind::overlapping);
+    EXPECT_EQ(kind(floor, sheet({0, -5, -0.001}, {0, 10, 0}, {0, 0, 10}), 1), ClashKind::overlapping);
+}
+
 TEST(Clash, PairsAreChosen) {
     std::vector<AssemblyPart> parts;
     for (int i = 0; i < 6; ++i)

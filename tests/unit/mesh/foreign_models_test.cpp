@@ -171,11 +171,13 @@ TEST_F(ForeignModels, AssimpFindsTheSameSurface) {
     EXPECT_EQ(compared, 52u);
 }
 
+#ifdef RAYCONTACT_3MF
 TEST_F(ForeignModels, Assimps3mfIsItsBoxInMillimetres) {
     const Surface theirs = surface_by_assimp("3MF/box.3mf"), ours = surface_of(load_mesh(folder / "3MF/box.3mf"));
     EXPECT_NEAR(theirs.area * 1e-6, ours.area, 1e-9 * ours.area);
     EXPECT_LT(length(0.001 * theirs.high - ours.high), 1e-9);
 }
+#endif
 
 } // namespace
 } // namespace raycontact

@@ -173,6 +173,49 @@ TEST(Load3mf, RefusesWhatItCannotReadByName) {
     EXPECT_TRUE(load_model(model_3mf(R"(<m:colorgroup id="5"/>)" + coloured, item, extensions)).repairs.empty());
 }
 
+TEST(Load3mf, NamesObjectsThatTheBuildDoesNotPlaceAndThatHaveNothing) {
+    const std::string nothing = R"(<object id="2" name="void"><mesh><vertices/><triangles/></mesh></object>)";
+    const std::string model = model_3mf(box_object() + nothing + box_object(R"(id="3" name="spare")")
+                                            + assembly(4, R"(<component objectid="1"/>)"),
+                                        item + R"(<item objectid="2"/>)");
+    const std::vector<std::string> expected{"left out 'spare', 'object 4': not in the build",
+                                            "left out what has no triangles: 'void'"};
+    const Mesh mesh = load_model(model);
+    EXPECT_EQ(mesh.vertices, box().vertices);
+    EXPECT_EQ(mesh.repairs, expected);
+    const TempFolder folder;
+    std::vector<std::string> left_out;
+    EXPECT_EQ(load_assembly(folder.write("m.3mf", zip_of(parts_3mf(model))), &left_out).size(), 1u);
+    EXPECT_EQ(left_out, expected);
+    expect_model_error(model_3mf(box_object(), ""), "has no triangles (left out 'object 1': not in the build)");
+    expect_model_error(model_3mf(nothing, R"(<item objectid="2"/>)"), "no triangles: 'void'); export a triangle mesh");
+}
+
+TEST(Load3mf, PackagesAsOtherProgramsZipThem) {
+    const std::string model = model_3mf(box_object(), item);
+    const auto with = [&](const std::string& old, const std::string& made, const std::string& name,
+                          const std::string& content) {
+        Parts parts = parts_3mf(content);
+        std::string& relations = parts[0].second;
+        relations.replace(relations.find(old), old.size(), made);
+        parts[1].first = name;
+        return load(zip_of(parts)).vertices;
+    };
+    const std::string target = R"("/3D/3dmodel.model")", name = "3D/3dmodel.model";
+    EXPECT_EQ(with(target, R"("3D/Part 1.model")", "3D/Part 1.model", model), box().vertices);
+    EXPECT_EQ(with(target, R"("/3d/3DMODEL.MODEL")", name, model), box().vertices);
+    // A picture first.
+    EXPECT_EQ(with("<Relationship Target", R"(<Relationship Target="/a.png" Id="a" Type="b"/><Relationship Target)",
+                   name, model),
+              box().vertices);
+    EXPECT_EQ(with("", "", name, "\xef\xbb\xbf" + model), box().vertices);
+    std::string wide = "\xff\xfe";
+    for (const char c : model) wide += {c, '\0'};
+    wide.replace(wide.find(std::string("U\0T\0F\0-\0008\0", 10)), 10, std::string("U\0T\0F\0-\0001\0006\0", 12));
+    EXPECT_EQ(with("", "", name, wide), box().vertices);
+    expect_error(zip_of({parts_3mf("")[0], {"3D/other.model", model}}), "has no part 3d/3dmodel.model");
+}
+
 TEST(Load3mf, RefusesDamagedModels) {
     const auto with = [](const std::string& object) { return model_3mf(object, item); };
     const auto changed = [&](const std::string& old, const std::string& made) {

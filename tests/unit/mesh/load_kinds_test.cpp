@@ -107,6 +107,41 @@ TEST(LoadKinds, StlSolidsArePartsByTheirNames) {
     EXPECT_EQ(load_assembly(folder.write("one.stl", solid(box(), "x")))[0].name, "one.stl");
 }
 
+TEST(LoadKinds, BinaryStlFilesJoinedEndToEndAreSolids) {
+    const TempFolder folder;
+    Mesh far = box();
+    for (Vec3& v : far.vertices) v.x += 1; // shares a face, and no edge is open
+    far.triangles.pop_back();
+    far.triangles.pop_back();
+    const std::string near = as_binary_stl(box()), two = near + as_binary_stl(far);
+    const auto file = folder.write("m.stl", two);
+    const Mesh whole = load_mesh(file);
+    EXPECT_EQ(whole.triangles.size(), 22u);
+    EXPECT_EQ(whole.repairs, Texts());
+    EXPECT_EQ(whole.triangles[12], (std::array<std::uint32_t, 3>{36, 37, 38}));
+    const std::vector<AssemblyPart> parts = load_assembly(file);
+    ASSERT_EQ(parts.size(), 2u);
+    EXPECT_EQ(parts[0].name, "solids[0]");
+    EXPECT_EQ(prepare_mesh(*parts[0].mesh).report.volume, 1);
+    EXPECT_EQ(parts[1].name, "solids[1]");
+    EXPECT_EQ(prepare_mesh(*parts[1].mesh).report.box_min, (Vec3{1, 0, 0}));
+    // So many that the headers are as long as some facets.
+    std::string many;
+    for (int i = 0; i < 26; ++i) many += near;
+    EXPECT_EQ(load_mesh(folder.write("many.stl", many)).triangles.size(), 26 * 12u);
+    EXPECT_EQ(load_assembly(folder.write("one.stl", near))[0].name, "one.stl");
+    // What does not fill the file exactly is counted as bytes, not guessed at.
+    for (const std::string& bytes : {two.substr(0, two.size() - 1), two + "x", near + std::string(84, '\0')}) {
+        const Mesh mesh = load_mesh(folder.write("m.stl", bytes));
+        EXPECT_EQ(mesh.triangles.size(), 12u);
+        EXPECT_EQ(mesh.repairs,
+                  Texts{"left out " + std::to_string(bytes.size() - near.size()) + " bytes behind the last facet"});
+    }
+    std::string damaged = two;
+    damaged.replace(near.size() + 84 + 12, 4, "\0\0\xc0\x7f", 4);
+    expect_error(folder.write("m.stl", damaged), "facet 12: a coordinate is not finite");
+}
+
 /// As OBJ, with statements before its faces.
 std::string grouped(const Mesh& mesh, std::size_t first,
                     const std::vector<std::pair<std::size_t, std::string>>& lines) {

@@ -135,8 +135,32 @@ TEST(Weld, WhatNoTriangleUsesJoinsNothing) {
 TEST(Weld, RefusesLengthsAndPlacesThatMakeNoSense) {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     for (const double length : {0.0, -1.0, 1e-13, 1e10, nan}) EXPECT_THROW(weld_mesh(box(), length), InputError);
-    EXPECT_THROW(weld_mesh(box(1e10), 1), InputError);
-    EXPECT_EQ(weld_mesh(box(1e9), 1e-12).vertices, box(1e9).vertices); // cells without a number of their own
+    Mesh bad = box();
+    bad.vertices[0].x = nan;
+    EXPECT_THROW(weld_mesh(bad, 1), InputError);
+    // Below the last digit nothing can be nearer.
+    try {
+        weld_mesh(box(1e9), 1e-7);
+        ADD_FAILURE() << "no error";
+    } catch (const InputError& error) {
+        EXPECT_STREQ(error.what(), "box: cannot be welded by 1e-07 m: as far from the origin as it is, coordinates "
+                                   "have no digits below 1.19209e-07 m; give a greater length");
+    }
+    EXPECT_EQ(weld_mesh(box(1e9), 1.2e-7).vertices, box(1e9).vertices);
+}
+
+TEST(Weld, MillimetresOfAMapAreWelded) {
+    Mesh loose = soup(torus(30, 20, 1000, 300), 2e-4);
+    const std::size_t welded_near = prepare_mesh(weld_mesh(loose, 1e-3)).report.vertices;
+    for (Vec3& v : loose.vertices) v = v + Vec3{691234567.25, 5334567890.5, 512125};
+    Mesh welded = weld_mesh(loose, 1e-3);
+    ASSERT_EQ(welded.repairs.size(), 1u);
+    for (Vec3& v : welded.vertices) v = v - Vec3{691234567.25, 5334567890.5, 512125};
+    const MeshReport report = prepare_mesh(welded).report;
+    EXPECT_TRUE(verdict_of(report).good);
+    EXPECT_EQ(report.vertices, welded_near);
+    EXPECT_EQ(report.vertices, 600u);
+    EXPECT_THROW(weld_mesh(loose, 9e-7), InputError); // its last digit is 9.5e-7
 }
 
 TEST(Weld, ALengthIsProposedWhereItCloses) {
