@@ -30,6 +30,8 @@ public:
     bool is_marked(BodySlot body) const { return marked_[body] != 0; }
     std::span<const BodySlot> list() const { return list_; }
 
+    /// The step that is being made.
+    Seen now() const { return step_; }
     /// Whether the step that was seen is the last one.
     bool is_next(Seen seen) const { return seen + 1 == step_; }
 

@@ -246,7 +246,6 @@ struct Scene::State {
     void end_step() {
         if (!next.empty()) next_poses.step_done(narrow.parts().executor(), bodies);
         slots.step_done();
-        stepped = moved.step_done();
     }
 
     /// Where nothing has changed since the last step, a method whose contacts follow from the poses finds what it
@@ -272,6 +271,7 @@ struct Scene::State {
         narrow.step(bodies, moved, slot_pairs, *contacts, stats);
         stats.broad_ms = broad_ms;
         end_step();
+        stepped = moved.step_done();
         some_new = true;
         want_shapes();
         pairs_changed = false;

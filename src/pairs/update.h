@@ -23,6 +23,8 @@ struct Update {
     std::span<const SlotPair> pairs; ///< the part's: sorted, each once
     const Motion& motion;            ///< not up to date with `standard`, which does not use it
     const Settings& settings;
+    /// What a pair had in the last step is kept: it need not be found again where neither body moved.
+    bool may_rest = false;
 
     /// Whether the edges near the other body are asked for.
     bool asks_near() const { return settings.features == Features::edges || settings.is_speculative(); }

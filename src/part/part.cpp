@@ -21,11 +21,17 @@ Part::Part(OpenDevice opened)
 
 void Part::trim() {
     pipeline_.trim();
-    free_all(placer_, edges_);
+    free_all(placer_, edges_, last_, merged_);
+    has_last_ = false;
+}
+
+void Part::forget() {
+    pipeline_.forget();
+    has_last_ = false;
 }
 
 Update Part::update(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs) const {
-    return {*device_, *executor_, shapes_, bodies, *moved_, pairs, motion_, *settings_};
+    return {*device_, *executor_, shapes_, bodies, *moved_, pairs, motion_, *settings_, may_rest_};
 }
 
 void Part::begin(std::span<const PlacedBody> bodies, const MovedBodies& moved, std::span<const SlotPair> pairs,
@@ -35,6 +41,8 @@ void Part::begin(std::span<const PlacedBody> bodies, const MovedBodies& moved, s
     pairs_ = pairs;
     settings_ = &settings;
     adopted_.clear();
+    may_rest_ = has_last_ && moved.is_next(seen_) && can_rest(settings, device_->traits());
+    seen_ = moved.now();
     if (needs_motion(settings, device_->traits())) {
         motion_.update(*executor_, bodies, moved);
         if (settings.is_speculative()) motion_.expect(*executor_, bodies, moved);
@@ -46,6 +54,32 @@ void Part::end(std::vector<Contact>& contacts) {
     const Update now = update(bodies_, pairs_);
     pipeline_.end(now);
     place(now, pipeline_, contacts);
+    if (may_rest_) add_resting(contacts);
+    // Where most bodies move, hardly a pair will rest.
+    has_last_ = can_rest(*settings_, device_->traits()) && moved_->list().size() < bodies_.size() / 4;
+    last_.clear();
+    if (has_last_) last_ = contacts;
+    may_rest_ = false; // what is asked after this is of new pairs
+}
+
+// Both are in order.
+void Part::add_resting(std::vector<Contact>& contacts) {
+    merged_.clear();
+    auto found = contacts.begin();
+    std::size_t place = 0;
+    for (auto first = last_.begin(), next = first; first != last_.end(); first = next) {
+        const SlotPair pair = pair_of(*first);
+        while (next != last_.end() && pair_of(*next) == pair) ++next;
+        while (place < pairs_.size() && pairs_[place] < pair) ++place;
+        if (place == pairs_.size()) break;
+        if (pairs_[place] != pair || !pipeline_.rests(update(bodies_, pairs_), place)) continue;
+        const auto before = std::find_if(found, contacts.end(), [&](const Contact& c) { return pair_of(c) > pair; });
+        merged_.insert(merged_.end(), found, before);
+        merged_.insert(merged_.end(), first, next);
+        found = before;
+    }
+    merged_.insert(merged_.end(), found, contacts.end());
+    contacts.swap(merged_);
 }
 
 void Part::place(const Update& now, const Pipeline& found, std::vector<Contact>& contacts) {
@@ -84,7 +118,7 @@ void Part::list_kept_rays(std::span<const PlacedBody> bodies, std::vector<KeptRa
 void Part::count(StepStats& stats) const {
     pipeline_.count(update(bodies_, pairs_), stats);
     for (const auto& added : adopted_) added->pipeline.count(update(bodies_, added->pairs), stats);
-    stats.pair_bytes += edges_.bytes();
+    stats.pair_bytes += edges_.bytes() + last_.size() * sizeof(Contact);
 }
 
 DeviceWork Part::take_work() {

@@ -48,10 +48,11 @@ public:
     /// After all of a step: frees what the next makes anew.
     void trim();
     /// Forgets what the methods kept.
-    void forget() { pipeline_.forget(); }
+    void forget();
 
 private:
     Update update(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs) const;
+    void add_resting(std::vector<Contact>& contacts);
     void place(const Update& now, const Pipeline& found, std::vector<Contact>& contacts);
 
     std::unique_ptr<Executor> executor_;
@@ -69,6 +70,9 @@ private:
     };
     std::vector<std::unique_ptr<Adopted>> adopted_;
 
+    std::vector<Contact> last_, merged_; ///< last_: of all pairs, in the last step, if few bodies moved in it
+    MovedBodies::Seen seen_ = 0;
+    bool has_last_ = false, may_rest_ = false;
     std::span<const PlacedBody> bodies_; ///< of the step, as what follows
     const MovedBodies* moved_;
     std::span<const SlotPair> pairs_;

@@ -22,6 +22,10 @@ Finds finds(const Update& update) {
 
 } // namespace
 
+bool can_rest(const Settings& settings, const DeviceTraits& traits) {
+    return finds(settings, traits) == Finds::certified;
+}
+
 bool needs_motion(const Settings& settings, const DeviceTraits& traits) {
     return finds(settings, traits) != Finds::standard;
 }
@@ -139,6 +143,7 @@ void Pipeline::find_speculative(const Update& update) {
     else
         certified_.find_points(update, batch_);
     for (std::uint32_t i = 0; i < update.pairs.size(); ++i) {
+        if (rests(update, i)) continue;
         if (!casts_points_ && certified_.has_points(i)) asked_.push_back({i, false, certified_.points(i)});
         if (!casts_points_ || near_points_.first(2 * i) == near_points_.first(2 * i + 2)) continue;
         asked_.push_back({i, false, {near_points_.of(2 * i), near_points_.of(2 * i + 1)}});
@@ -151,6 +156,7 @@ void Pipeline::list_asked(const Update& update) {
     if (!update.asks_near()) return;
     const bool edges = update.settings.features == Features::edges;
     for (std::uint32_t i = 0; i < update.pairs.size(); ++i) {
+        if (rests(update, i)) continue;
         const bool in_contact = local_.first(2 * i) != local_.first(2 * i + 2);
         const bool comes_near = !speculative_.of(i).empty();
         const bool apart = edges && !casts_edges_ && certified_.is_apart(i) && !in_contact;

@@ -30,6 +30,9 @@ public:
     /// order; none without edges and speculative contacts.
     std::span<const AskedPair> asked() const { return asked_; }
 
+    /// Whether the i-th pair of the step has what it had in the last one, which was not found again.
+    bool rests(const Update& update, std::size_t i) { return update.may_rest && certified_.rests(i); }
+
     /// As Part's.
     std::vector<std::byte> export_state(const Update& last, std::span<const SlotPair> pairs);
     void import_state(const Update& last, std::span<const std::byte> bytes);
@@ -68,6 +71,8 @@ private:
     std::vector<AskedPair> asked_;
 };
 
+/// Whether the method lets pairs rest (Update::may_rest) on this device.
+bool can_rest(const Settings& settings, const DeviceTraits& traits);
 /// Whether the method needs the motion of bodies on this device.
 bool needs_motion(const Settings& settings, const DeviceTraits& traits);
 

@@ -28,6 +28,7 @@ public:
 
     /// Of the i-th pair of the step: its near edges, and what is known while they last (AskedPair).
     std::array<std::span<kernels::NearEdge>, 2> near(std::size_t i) { return edges_.of(table_.state(i)); }
+    bool rests(std::size_t i) { return table_.hot(i).rests; }
     bool has_points(std::size_t i) { return table_.hot(i).has_points; }
     std::array<std::span<kernels::NearEdge>, 2> points(std::size_t i) { return points_.of(table_.state(i)); }
     bool is_apart(std::size_t i) { return table_.hot(i).apart; }

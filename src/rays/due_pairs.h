@@ -55,6 +55,7 @@ struct Slack {
     bool apart = false;      ///< as AskedPair's, while its near edges last
     bool all = false;        ///< its near edges have those that hide little, too (docs/internals/edges.md)
     bool has_points = false; ///< it has near vertices
+    bool rests = false;      ///< nothing was asked about it in this step, as neither body moved
 };
 
 /// A direction of a pair that has work in this step: rays to decide, blocks to test, or a list to make.
