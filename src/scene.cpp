@@ -228,6 +228,7 @@ struct Scene::State {
         } catch (...) {
             narrow.parts().forget(); // slots may get other bodies before the next step
             forget_moves();
+            broad_phase.trim();
             pairs_found = false;
             contacts = own;
             contacts->clear();
@@ -360,9 +361,9 @@ BodyId Scene::add(std::shared_ptr<const Shape> shape, const Pose& pose) {
 void Scene::remove(BodyId body) {
     State& s = *state_;
     PlacedBody& gone = s.existing(body, "Scene::remove");
+    s.world.remove_shape(*gone.shape);
     s.narrow.parts().remove_shape(gone.shape);
     s.met_shapes.erase(gone.shape); // its address may be another's soon
-    s.world.remove_shape(*gone.shape);
     gone.shape = nullptr;
     s.mark(body.slot);
     s.pairs_stand = false;

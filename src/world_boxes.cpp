@@ -52,16 +52,18 @@ void WorldBoxes::update(Executor& executor, std::span<const PlacedBody> bodies, 
         remake(executor, bodies, next, settings);
     } catch (...) {
         seen_ = 0;
+        tree_ = {};
+        resize(boxes_.size());
         throw;
     }
 }
 
 void WorldBoxes::resize(std::size_t slots) {
-    accept();
+    changed_.clear();
     is_resized_ = true;
-    boxes_.resize(slots, no_box);
     is_other_.resize(slots);
-    is_changed_.resize(slots);
+    is_changed_.assign(slots, 0);
+    boxes_.resize(slots, no_box); // last: where memory lacks, it tells that the others may be too short
 }
 
 void WorldBoxes::remake(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pose> next,
