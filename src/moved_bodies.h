@@ -4,14 +4,16 @@
 #include "executor/executor.h"
 #include "slot_pair.h"
 
+#include <algorithm>
 #include <cstdint>
+#include <new>
 #include <span>
 #include <vector>
 
 namespace raycontact {
 
 /// Which bodies are new, gone or elsewhere since the last step, or expected elsewhere at the next one. What keeps
-/// something of each body asks each step for these alone, so that a body at rest costs nothing.
+/// something of each body asks each step for these alone.
 class MovedBodies {
 public:
     /// What a user has seen: a step's number.
@@ -22,8 +24,20 @@ public:
         if (marked_.size() < slots) marked_.resize(slots, 0);
         if (list_.capacity() < slots) list_.reserve(marked_.capacity());
     }
+    /// Frees the memory of slots from this on, which have no body; any other may be elsewhere then.
+    void cut(std::size_t slots) noexcept {
+        forget();
+        marked_.resize(std::min(slots, marked_.size()));
+        marked_.shrink_to_fit();
+        list_.shrink_to_fit();
+        try {
+            list_.reserve(marked_.size());
+        } catch (const std::bad_alloc&) {
+        }
+    }
     void mark(BodySlot body) noexcept {
         if (marked_[body] != 0) return;
+        if (list_.size() == list_.capacity()) return forget(); // after a cut that lacked memory
         marked_[body] = 1;
         list_.push_back(body);
     }

@@ -157,6 +157,7 @@ struct Scene::State {
         world.update(executor, bodies, next, narrow.settings());
         const BroadPhaseInput input{world.boxes(), filters};
         const bool stood = std::exchange(pairs_found, false) && !world.is_resized();
+        pairs_stand = false; // until the lists are whole again
         if (!stood) broad_phase.find(executor, world.tree(), input, slot_pairs);
         if (!stood || broad_phase.update(executor, world.tree(), input, world.changed(), slot_pairs)) name_pairs();
         world.accept();
@@ -170,7 +171,6 @@ struct Scene::State {
     }
 
     void name_pairs() {
-        pairs_stand = false;
         keep_pairs();
         pairs.resize(slot_pairs.size());
         narrow.parts().executor().each(pairs.size(), 4096, [&](std::uint32_t i) {
@@ -192,15 +192,18 @@ struct Scene::State {
         const bool same = std::equal(given.begin(), given.end(), pairs.begin(), pairs.end());
         if (same && pairs_stand) return; // an earlier step has checked them
         for (const Pair& pair : given) check_pair(pair, static_cast<std::size_t>(&pair - given.data()));
-        pairs_stand = pairs_found = false;
         if (!same) {
+            sorted.assign(given.begin(), given.end());
+            for (Pair& pair : sorted)
+                if (pair.first.slot > pair.second.slot) std::swap(pair.first, pair.second);
+            if (!std::is_sorted(sorted.begin(), sorted.end(), by_slots))
+                std::sort(sorted.begin(), sorted.end(), by_slots);
+            sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+            if (sorted == pairs && pairs_stand) return;
             keep_pairs();
-            pairs.assign(given.begin(), given.end()); // given may be this very list
+            pairs.swap(sorted);
         }
-        for (Pair& pair : pairs)
-            if (pair.first.slot > pair.second.slot) std::swap(pair.first, pair.second);
-        if (!std::is_sorted(pairs.begin(), pairs.end(), by_slots)) std::sort(pairs.begin(), pairs.end(), by_slots);
-        pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+        pairs_stand = pairs_found = false;
         slot_pairs.clear();
         for (const auto& [a, b] : pairs) slot_pairs.emplace_back(a.slot, b.slot);
         pairs_stand = true;
@@ -240,7 +243,9 @@ struct Scene::State {
     void look_ahead() {
         next = {};
         if (!narrow.settings().is_speculative()) return;
+        const MovedBodies::Seen now = moved.now();
         next = next_poses.update(narrow.parts().executor(), bodies, moved);
+        if (moved.now() != now) world.forget();
         for (const BodySlot slot : moved.list()) world.mark(slot);
     }
 
@@ -250,10 +255,10 @@ struct Scene::State {
     }
 
     /// Where nothing has changed since the last step, a method whose contacts follow from the poses finds what it
-    /// found.
-    bool rests() const {
+    /// found, but for what a device that was lost has to say.
+    bool rests() {
         return moved.is_next(stepped) && moved.list().empty() && !pairs_changed
-               && !follows_rays(narrow.settings().method);
+               && !follows_rays(narrow.settings().method) && !narrow.parts().has_news();
     }
 
     /// is_held: the contacts are, by somebody else.
@@ -284,7 +289,7 @@ struct Scene::State {
         world.trim();
         broad_phase.trim();
         pairs.shrink_to_fit();
-        free_all(last_pairs);
+        free_all(last_pairs, sorted);
         slot_pairs.shrink_to_fit();
     }
 
@@ -298,6 +303,8 @@ struct Scene::State {
         bodies.shrink_to_fit();
         user_data.shrink_to_fit();
         filters.shrink_to_fit();
+        moved.cut(slots.end());
+        world.cut(slots.end());
     }
 
     NarrowPhase narrow;
@@ -315,6 +322,7 @@ struct Scene::State {
     std::mutex refreshing; ///< world
     BroadPhase broad_phase;
     std::vector<Pair> pairs, last_pairs; ///< last_pairs: of the last step whose pairs were others
+    std::vector<Pair> sorted;            ///< of set_pairs()
     std::vector<SlotPair> slot_pairs;    ///< `pairs` by slot
     std::shared_ptr<std::vector<Contact>> contacts = std::make_shared<std::vector<Contact>>();
     StepStats stats;
@@ -323,7 +331,7 @@ struct Scene::State {
     std::uint64_t steps_met = 0;
     bool pairs_changed = false; ///< since the last step
     bool pairs_stand = false;   ///< both lists are whole, and no body has been removed since
-    bool pairs_found = false;   ///< they are those of `boxes`, by the filters as they are
+    bool pairs_found = false;   ///< they are those of `world`, by the filters as they are
     Preparer preparer;          ///< last: it ends first
 };
 
@@ -447,7 +455,8 @@ std::uint64_t Scene::user_data(BodyId body) const {
 }
 void Scene::set_filter(BodyId body, std::uint32_t groups, std::uint32_t mask) {
     state_->existing(body, "Scene::set_filter");
-    state_->filters[body.slot] = {groups, mask};
+    const BroadPhaseInput::Filter filter{groups, mask};
+    if (std::exchange(state_->filters[body.slot], filter) == filter) return;
     state_->pairs_found = false;
 }
 

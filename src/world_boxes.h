@@ -21,6 +21,7 @@ public:
     void add_shape(const Shape& shape);
     void remove_shape(const Shape& shape);
     void forget() noexcept { moved_.forget(); }
+    void cut(std::size_t slots) noexcept { moved_.cut(slots); }
 
     /// next: where bodies are expected, whose boxes then hold the way there; empty: nowhere. Both by slot.
     void update(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pose> next,

@@ -34,13 +34,16 @@ public:
             placed.pose = step.poses[body];
             placed.centred = centred_pose(*placed.shape, placed.pose);
         }
+        moved_.forget(); // every pose is set
         pairs_.clear();
         for (const auto& [a, b] : step.pairs) pairs_.emplace_back(a.slot, b.slot);
         find(false);
     }
 
 protected:
-    Update update() { return {*opened_.device, *opened_.executor, shapes_, bodies_, moved_, pairs_, motion_, settings_}; }
+    Update update() {
+        return {*opened_.device, *opened_.executor, shapes_, bodies_, moved_, pairs_, motion_, settings_};
+    }
 
     // grid: those alone that the grids of the shapes leave. They are cast, too.
     void find(bool grid) {

@@ -98,7 +98,7 @@ public:
     /// Finds the pairs whose boxes overlap (our own broad phase) and then their contacts. Throws std::runtime_error
     /// where the last device fails, and InputError for a step too large for 32 bits (2^31 pairs, 2^32 rays). It then
     /// has no contacts, and the next step begins anew. A step in which nothing is new, gone or elsewhere has the
-    /// contacts of the last one, no longer new, and no work but with `iterative` and `predictive`.
+    /// contacts of the last one, no longer new. Nothing is sought then but by `iterative` and `predictive`.
     std::span<const Contact> find_contacts();
     /// Contacts of the pairs that the caller's own broad phase found: in any order, duplicates allowed. Throws as the
     /// other one; and InputError for a pair of a body with itself or one that is not in the scene, before it begins.
@@ -124,9 +124,9 @@ public:
     std::vector<Prediction> predictions() const;
 
     // Queries of the bodies where they are now, poses set since the last step included, by the functions of query.h,
-    // with what those promise and throw. Each looks at the boxes of all bodies and then into meshes, nearest first.
-    // They change nothing: several threads may ask a scene at once as long as none changes it. wanted: the bodies that
-    // count; empty: all.
+    // with what those promise and throw. Each walks a tree of the bodies' boxes and then looks into meshes, mostly the
+    // nearest first. They change no answer: several threads may ask a scene at once as long as none changes it. wanted:
+    // the bodies that count; empty: all.
 
     /// Says whether a query counts a body.
     using Wanted = std::function<bool(BodyId)>;

@@ -12,7 +12,7 @@ namespace {
 constexpr float unbounded = std::numeric_limits<float>::infinity();
 constexpr std::uint64_t last_place = std::numeric_limits<std::uint64_t>::max();
 // An order serves until so many boxes for each that there is have moved.
-constexpr std::uint64_t moves = 4;
+constexpr std::uint64_t moves = 16;
 // Where more boxes than this share have changed, to fill the tree takes less than to follow them.
 constexpr std::size_t few = 4;
 
@@ -83,13 +83,12 @@ void BoxTree::build(Executor& executor, std::span<const Box> boxes) {
 }
 
 void BoxTree::update(Executor& executor, std::span<const Box> boxes, std::span<const BodySlot> changed) {
-    if (sorts_next_ || order_.size() != boxes.size() || changed.size() > boxes.size() / few) {
-        build(executor, boxes);
-        return;
-    }
     changes_ += changed.size();
-    sorts_next_ = changes_ > moves * boxes.size();
-    refit(boxes, changed);
+    sorts_next_ = sorts_next_ || changes_ > moves * boxes.size();
+    if (sorts_next_ || order_.size() != boxes.size() || changed.size() > boxes.size() / few)
+        build(executor, boxes);
+    else
+        refit(boxes, changed);
 }
 
 void BoxTree::sort(std::span<const Box> boxes) {

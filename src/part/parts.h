@@ -51,6 +51,8 @@ public:
     void wake();
     void forget();
 
+    /// Whether take_lost() or take_warnings() has something to tell.
+    bool has_news() const { return !lost_.empty() || !warnings_.empty(); }
     /// Those dropped by add_shape() and pack_shapes() since the last call.
     std::vector<std::size_t> take_lost() { return std::exchange(lost_, {}); }
     /// What was dropped since the last call, and why; for the user.

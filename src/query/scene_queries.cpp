@@ -80,12 +80,14 @@ std::optional<BodyRayHit> Scene::raycast(const Vec3& origin, const Vec3& directi
     const FloatEnvironment environment;
     const CheckedRay ray(origin, direction, max);
     Nearest<BodyRayHit> nearest(max);
-    visit_near(
-        [&](const Vec3& low, const Vec3& high) { return ray.away(low, high); }, [&] { return nearest.farthest(); },
-        [&](BodyId body) {
-            if (wanted && !wanted(body)) return;
-            nearest.add(body, raycontact::raycast(shape(body), pose(body), origin, direction, nearest.farthest()));
-        });
+    const auto ask = [&](BodyId body) {
+        if (wanted && !wanted(body)) return;
+        const Box box = box_around(shape(body), pose(body)); // may be tighter than the tree's
+        if (ray.away(box.low, box.high) > nearest.farthest()) return;
+        nearest.add(body, raycontact::raycast(shape(body), pose(body), origin, direction, nearest.farthest()));
+    };
+    visit_near([&](const Vec3& low, const Vec3& high) { return ray.away(low, high); },
+               [&] { return nearest.farthest(); }, ask);
     return nearest.found();
 }
 
@@ -93,12 +95,12 @@ bool Scene::raycast_any(const Vec3& origin, const Vec3& direction, double max, c
     const FloatEnvironment environment;
     const CheckedRay ray(origin, direction, max);
     bool any = false;
+    const auto ask = [&](BodyId body) {
+        if (wanted && !wanted(body)) return;
+        any = raycontact::raycast_any(shape(body), pose(body), origin, direction, max);
+    };
     visit_near([&](const Vec3& low, const Vec3& high) { return ray.away(low, high); },
-               [&] { return any ? -infinite : max; },
-               [&](BodyId body) {
-                   if (wanted && !wanted(body)) return;
-                   any = raycontact::raycast_any(shape(body), pose(body), origin, direction, max);
-               });
+               [&] { return any ? -infinite : max; }, ask);
     return any;
 }
 
@@ -107,12 +109,14 @@ std::optional<BodyClosestPoint> Scene::closest_point(const Vec3& point, double m
     check_place(point, "closest_point: the point");
     check_reach(max, "closest_point");
     Nearest<BodyClosestPoint> nearest(max);
+    const auto ask = [&](BodyId body) {
+        if (wanted && !wanted(body)) return;
+        const Box box = box_around(shape(body), pose(body)); // may be tighter than the tree's
+        if (away_from(point, box.low, box.high) > nearest.farthest()) return;
+        nearest.add(body, raycontact::closest_point(shape(body), pose(body), point, nearest.farthest()));
+    };
     visit_near([&](const Vec3& low, const Vec3& high) { return away_from(point, low, high); },
-               [&] { return nearest.farthest(); },
-               [&](BodyId body) {
-                   if (wanted && !wanted(body)) return;
-                   nearest.add(body, raycontact::closest_point(shape(body), pose(body), point, nearest.farthest()));
-               });
+               [&] { return nearest.farthest(); }, ask);
     return nearest.found();
 }
 

@@ -175,5 +175,41 @@ TEST(moved_bodies, a_step_finds_what_a_new_scene_finds) {
     EXPECT_GT(contacts, 20000u);
 }
 
+// Given pairs in any order; nothing is cast, the contacts stay, and who holds the last ones still reads that they are
+// new.
+TEST(moved_bodies, a_step_in_which_nothing_moved_has_the_last_contacts) {
+    Settings settings;
+    settings.method = Method::standard;
+    settings.features = Features::vertices;
+    Scene scene(settings);
+    const auto& shapes = crowd_shapes(Kind::concave, 1);
+    std::vector<BodyId> bodies;
+    for (int i = 0; i < 3; ++i) {
+        Pose pose;
+        pose.translation.x = 0.3 * i;
+        bodies.push_back(scene.add(shapes[0], pose));
+    }
+    const std::vector<Pair> pairs{{bodies[2], bodies[1]}, {bodies[0], bodies[1]}, {bodies[1], bodies[0]}};
+    const auto held = [&] {
+        scene.find_contacts(pairs);
+        return scene.shared_contacts();
+    };
+    const auto first = held(), second = held();
+    EXPECT_EQ(scene.stats().details.rays_cast, 0u);
+    EXPECT_EQ(scene.stats().contacts_new, 0u);
+    EXPECT_EQ(scene.stats().contacts, first->size());
+    ASSERT_GT(first->size(), 0u);
+    ASSERT_EQ(second->size(), first->size());
+    for (std::size_t i = 0; i < first->size(); ++i) {
+        EXPECT_TRUE((*first)[i].is_new);
+        EXPECT_FALSE((*second)[i].is_new);
+        EXPECT_EQ((*first)[i].depth, (*second)[i].depth);
+    }
+    EXPECT_EQ(held(), second) << "nothing is copied where nothing changes";
+    scene.set_pose(bodies[2], {});
+    held();
+    EXPECT_GT(scene.stats().details.rays_cast, 0u);
+}
+
 } // namespace
 } // namespace raycontact::reference
