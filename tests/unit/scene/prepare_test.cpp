@@ -46,11 +46,13 @@ TEST(Prepare, ComesAfterASecondMeetingAndNotBefore) {
         settings.method = method;
         Scene scene(settings);
         scene.add(a);
-        scene.add(b, {.translation = {0.3, 0, 0}});
+        const BodyId moving = scene.add(b, {.translation = {0.3, 0, 0}});
         scene.add(lonely, {.translation = {100, 0, 0}});
         scene.find_contacts();
+        scene.find_contacts();
         std::this_thread::sleep_for(std::chrono::milliseconds(20));
-        EXPECT_FALSE(a->is_prepared() || b->is_prepared()) << "one query";
+        EXPECT_FALSE(a->is_prepared() || b->is_prepared()) << "one query, and nothing moved since";
+        scene.set_pose(moving, {.translation = {0.301, 0, 0}});
         scene.find_contacts();
         wait_until_prepared(*a);
         wait_until_prepared(*b);
@@ -132,8 +134,12 @@ TEST(Prepare, ASceneThatGoesDoesNotWait) {
             settings.features = Features::vertices;
             Scene scene(settings);
             scene.add(shape);
-            scene.add(shape, {.translation = {0.99 * (shape->box_max().x - shape->box_min().x), 0, 0}});
-            for (int k = 0; k < 3; ++k) scene.find_contacts();
+            const double beside = 0.99 * (shape->box_max().x - shape->box_min().x);
+            const BodyId moving = scene.add(shape);
+            for (int k = 0; k < 3; ++k) {
+                scene.set_pose(moving, {.translation = {beside + 1e-4 * k, 0, 0}});
+                scene.find_contacts();
+            }
         }
         waited = shape->is_prepared();
         shape->prepare();
