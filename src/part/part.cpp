@@ -41,7 +41,8 @@ void Part::begin(std::span<const PlacedBody> bodies, const MovedBodies& moved, s
     pairs_ = pairs;
     settings_ = &settings;
     adopted_.clear();
-    may_rest_ = has_last_ && moved.is_next(seen_) && can_rest(settings, device_->traits());
+    knows_moves_ = moved.is_next(seen_);
+    may_rest_ = has_last_ && knows_moves_ && can_rest(settings, device_->traits());
     seen_ = moved.now();
     if (needs_motion(settings, device_->traits())) {
         motion_.update(*executor_, bodies, moved);
@@ -56,7 +57,7 @@ void Part::end(std::vector<Contact>& contacts) {
     place(now, pipeline_, contacts);
     if (may_rest_) add_resting(contacts);
     // Where most bodies move, hardly a pair will rest.
-    has_last_ = can_rest(*settings_, device_->traits()) && moved_->list().size() < bodies_.size() / 4;
+    has_last_ = knows_moves_ && can_rest(*settings_, device_->traits()) && moved_->list().size() < bodies_.size() / 4;
     last_.clear();
     if (has_last_) last_ = contacts;
     may_rest_ = false; // what is asked after this is of new pairs

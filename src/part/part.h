@@ -73,6 +73,7 @@ private:
     std::vector<Contact> last_, merged_; ///< last_: of all pairs, in the last step, if few bodies moved in it
     MovedBodies::Seen seen_ = 0;
     bool has_last_ = false, may_rest_ = false;
+    bool knows_moves_ = false;           ///< those since the last step: else any body may have moved
     std::span<const PlacedBody> bodies_; ///< of the step, as what follows
     const MovedBodies* moved_;
     std::span<const SlotPair> pairs_;
