@@ -90,9 +90,8 @@ void NarrowPhase::rest(StepStats& stats) {
     stats.contacts_new = stats.contacts_lost = stats.devices_lost = 0;
     stats.warnings.clear();
     StepDetails& details = stats.details;
-    details = {.ray_length = details.ray_length,
-               .contacts_merged = details.contacts_merged,
-               .work = std::move(details.work)};
+    details = {
+        .ray_length = details.ray_length, .contacts_merged = details.contacts_merged, .work = std::move(details.work)};
     for (DeviceWork& work : details.work) work = {.device = std::move(work.device), .pairs = work.pairs};
     stats.narrow_ms = milliseconds_since(start);
 }
