@@ -57,7 +57,7 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, const MovedBodies& mo
         while (!failed.empty()) failed = replace(failed, stats);
         if (!alone) merge(contacts);
         reducer_.run(parts_.executor(), settings_, bodies, changes_, contacts);
-        changes_.mark(contacts);
+        changes_.mark(parts_.executor(), contacts);
     } catch (...) {
         parts_.forget(); // the step failed half-way: what it kept may be wrong
         contacts.clear();
@@ -70,18 +70,35 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, const MovedBodies& mo
     stats.details.contacts_merged = reducer_.merged();
     stats.contacts_new = changes_.new_count();
     stats.contacts_lost = changes_.lost().size();
-    for (const Contact& contact : contacts) {
-        if (contact.is_speculative())
-            ++stats.contacts_speculative;
-        else
-            stats.details.ray_length += double(contact.ray_length);
-        stats.depth_max = std::max(stats.depth_max, double(contact.depth));
-    }
-    stats.contacts = contacts.size() - stats.contacts_speculative;
+    sum(contacts, stats);
     for (const Contact& contact : reducer_.left_out())
         stats.depth_max = std::max(stats.depth_max, double(contact.depth));
     trim(stats.pair_bytes, contacts);
     stats.narrow_ms = milliseconds_since(start);
+}
+
+// By slices whose bounds no thread decides: sums of floats keep their bits.
+void NarrowPhase::sum(std::span<const Contact> contacts, StepStats& stats) {
+    constexpr std::size_t at_once = 4096;
+    sums_.assign((contacts.size() + at_once - 1) / at_once, {});
+    parts_.executor().each(sums_.size(), 1, [&](std::uint32_t i) {
+        Sums own;
+        for (const Contact& contact :
+             contacts.subspan(i * at_once).first(std::min(at_once, contacts.size() - i * at_once))) {
+            if (contact.is_speculative())
+                ++own.speculative;
+            else
+                own.ray_length += double(contact.ray_length);
+            own.depth_max = std::max(own.depth_max, double(contact.depth));
+        }
+        sums_[i] = own;
+    });
+    for (const Sums& own : sums_) {
+        stats.contacts_speculative += own.speculative;
+        stats.details.ray_length += own.ray_length;
+        stats.depth_max = std::max(stats.depth_max, own.depth_max);
+    }
+    stats.contacts = contacts.size() - stats.contacts_speculative;
 }
 
 void NarrowPhase::rest(StepStats& stats) {

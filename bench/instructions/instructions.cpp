@@ -257,11 +257,11 @@ void count_all() {
     Pipeline pipeline;
     pipeline.begin(update);
     pipeline.end(update);
-    const auto local = pipeline.contacts().all();
+    const auto& local = pipeline.contacts();
     Placer placer;
     std::vector<Contact> placed;
-    count_host("place_contacts,standard", local.size(),
-               [&] { placer.run(executor, Direction::reprojected, small.steps[0], small.pairs, local, placed); });
+    count_host("place_contacts,standard", local.all().size(),
+               [&] { placer.run(executor, Direction::reprojected, small.steps[0], small.pairs, local, {}, placed); });
 
     const std::vector<Box> boxes = make_boxes(4096);
     std::vector<SlotPair> pairs;

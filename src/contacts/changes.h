@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "executor/executor.h"
+
 #include <raycontact/contact.h>
 
 #include <cstdint>
@@ -32,7 +34,7 @@ public:
     /// Sorted.
     std::span<const Known> previous() const { return previous_; }
     /// contacts: sorted; sets is_new.
-    void mark(std::span<Contact> contacts);
+    void mark(Executor& executor, std::span<Contact> contacts);
     /// All are as in the last step.
     void rest() {
         lost_.clear();
@@ -45,9 +47,18 @@ public:
         previous_.shrink_to_fit();
         lost_.shrink_to_fit();
         touched_.shrink_to_fit();
+        slices_ = {};
     }
 
 private:
+    /// What some pairs in a row lost and got.
+    struct Slice {
+        std::vector<LostContact> lost;
+        std::size_t new_count;
+    };
+    void compare(std::span<const Known> previous, std::span<Contact> contacts, Slice& slice) const;
+
+    std::vector<Slice> slices_;
     std::vector<Known> previous_;
     std::vector<LostContact> lost_;
     std::vector<std::uint8_t> touched_; ///< by place in previous_

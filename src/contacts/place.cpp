@@ -57,35 +57,64 @@ void place(Contact& contact, const Directed& pair, const kernels::LocalContact& 
                   pair.direction == Direction::weighted ? shape.vertex_areas[local.vertex] : 1);
 }
 
+// Sorts a pair's placed contacts in behind `count` of its vertices: from the back, where there is room for them.
+void merge(std::span<const Contact> placed, Contact* own, std::size_t count) {
+    std::size_t left = placed.size();
+    for (Contact* to = own + count + left; left > 0;) {
+        const bool own_is_last = count > 0 && own[count - 1].key() > placed[left - 1].key();
+        *--to = own_is_last ? own[--count] : placed[--left];
+    }
+}
+
 } // namespace
 
 void Placer::run(Executor& executor, Direction direction, std::span<const PlacedBody> bodies,
-                 std::span<const SlotPair> pairs, std::span<const kernels::LocalContact> local,
-                 std::vector<Contact>& contacts) {
-    contacts.resize(local.size());
+                 std::span<const SlotPair> pairs, const ByPair<kernels::LocalContact>& by_pair,
+                 std::span<const PlacedContacts> placed, std::vector<Contact>& contacts) {
+    const std::span<const kernels::LocalContact> local = by_pair.all();
+    const std::size_t more = placed.empty() ? 0 : placed.back().before + placed.back().contacts.size();
+    contacts.resize(local.size() + more);
     order_.resize(local.size());
-    const auto begins_pair = [&](std::uint32_t i) {
-        return i == 0 || i == local.size() || local[i].pair != local[i - 1].pair;
-    };
-    // The contacts of a pair lie together, in the order of its clusters. A slice handles the pairs that begin in it.
-    executor.run(static_cast<std::uint32_t>(local.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
-        while (!begins_pair(begin)) ++begin;
-        for (std::uint32_t next = begin; begin < end; begin = next) {
-            const std::uint32_t directed = local[begin].pair;
-            const auto [source, target] = directed_bodies(bodies, pairs, directed);
-            const auto [a, b] = pairs[directed / 2];
-            const Directed pair{id_in(bodies, a),     id_in(bodies, b),     directed % 2 == 0, direction,
-                                source.shape->data(), target.shape->data(), source.pose,       target.pose};
-            do {
-                order_[next] = std::uint64_t{local[next].vertex} << 32 | next;
-                pair.send_for(local[next]);
-            } while (!begins_pair(++next));
-            std::sort(order_.begin() + begin, order_.begin() + next);
-            for (std::uint32_t i = begin; i < next; ++i) place(contacts[i], pair, local[order_[i] & 0xffffffff]);
-            if (direction != Direction::refined) continue;
-            const Refiner refiner(source, target);
-            for (std::uint32_t i = begin; i < next; ++i) refiner.refine(contacts[i], local[order_[i] & 0xffffffff]);
+    const auto place_direction = [&](std::uint32_t begin, std::uint32_t end, Contact* to) {
+        const std::uint32_t directed = local[begin].pair;
+        const auto [source, target] = directed_bodies(bodies, pairs, directed);
+        const auto [a, b] = pairs[directed / 2];
+        const Directed pair{id_in(bodies, a),     id_in(bodies, b),     directed % 2 == 0, direction,
+                            source.shape->data(), target.shape->data(), source.pose,       target.pose};
+        for (std::uint32_t i = begin; i < end; ++i) {
+            order_[i] = std::uint64_t{local[i].vertex} << 32 | i;
+            pair.send_for(local[i]);
         }
+        std::sort(order_.begin() + begin, order_.begin() + end);
+        for (std::uint32_t i = begin; i < end; ++i) place(to[i - begin], pair, local[order_[i] & 0xffffffff]);
+        if (direction != Direction::refined) return;
+        const Refiner refiner(source, target);
+        for (std::uint32_t i = begin; i < end; ++i) refiner.refine(to[i - begin], local[order_[i] & 0xffffffff]);
+    };
+    const auto pair_at = [&](std::uint32_t i) { return local[i].pair / 2; };
+    // A slice handles the pairs that begin in it.
+    executor.run(static_cast<std::uint32_t>(local.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
+        while (begin > 0 && begin < end && pair_at(begin) == pair_at(begin - 1)) ++begin;
+        if (begin == end) return;
+        auto own = std::ranges::lower_bound(placed, pair_at(begin), {}, &PlacedContacts::pair);
+        while (begin < end) {
+            const std::uint32_t pair = pair_at(begin);
+            const std::uint32_t middle = by_pair.first(2 * pair + std::size_t{1});
+            const std::uint32_t next = by_pair.first(2 * pair + std::size_t{2});
+            while (own != placed.end() && own->pair < pair) ++own;
+            Contact* const to = contacts.data() + begin + (own == placed.end() ? more : own->before);
+            if (begin < middle) place_direction(begin, middle, to);
+            if (middle < next) place_direction(middle, next, to + (middle - begin));
+            if (own != placed.end() && own->pair == pair) merge(own->contacts, to, next - begin);
+            begin = next;
+        }
+    });
+    // Pairs without contacts of vertices.
+    executor.each(placed.size(), 256, [&](std::uint32_t i) {
+        const PlacedContacts& own = placed[i];
+        const std::uint32_t first = by_pair.first(2 * std::size_t{own.pair});
+        if (first != by_pair.first(2 * std::size_t{own.pair} + 2)) return;
+        std::ranges::copy(own.contacts, contacts.begin() + first + own.before);
     });
 }
 

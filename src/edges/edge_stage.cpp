@@ -116,10 +116,9 @@ void place(Contact& contact, const FeatureContact& found, BodyId a, BodyId b, co
 } // namespace
 
 void EdgeStage::run(const Update& update, const ByPair<kernels::LocalContact>& local,
-                    const SpeculativeVertices& speculative, std::span<const AskedPair> asked,
-                    std::vector<Contact>& contacts) {
+                    const SpeculativeVertices& speculative, std::span<const AskedPair> asked) {
     // By the places of the pairs: so a block has in most steps what it had before, and allocates nothing.
-    block_count_ = (update.pairs.size() + pairs_in_block - 1) / pairs_in_block;
+    block_count_ = asked.empty() ? 0 : (update.pairs.size() + pairs_in_block - 1) / pairs_in_block;
     if (blocks_.size() < block_count_) blocks_.resize(block_count_);
     const Question question{update, local, speculative, asked};
     // A thread takes every most_work-th block: so it is not chance what a workspace has room for.
@@ -128,7 +127,7 @@ void EdgeStage::run(const Update& update, const ByPair<kernels::LocalContact>& l
     update.executor.each(work_count, 1, [&](std::uint32_t w) {
         for (std::size_t b = w; b < block_count_; b += most_work) find(work_[w], question, b);
     });
-    merge(question, contacts);
+    list_found(update.executor);
 }
 
 void EdgeStage::find(Workspace& work, const Question& question, std::size_t number) {
@@ -139,8 +138,9 @@ void EdgeStage::find(Workspace& work, const Question& question, std::size_t numb
         return std::ranges::lower_bound(question.asked, pair, {}, &AskedPair::pair);
     };
     for (const AskedPair& asked : std::span(at(number * pairs_in_block), at((number + 1) * pairs_in_block))) {
+        const std::size_t before = block.contacts.size();
         find(work, block, question, asked);
-        block.ends.push_back(static_cast<std::uint32_t>(block.contacts.size()));
+        if (block.contacts.size() > before) block.ends.emplace_back(asked.pair, block.contacts.size());
     }
 }
 
@@ -174,34 +174,27 @@ void EdgeStage::find(Workspace& work, Block& block, const Question& question, co
 }
 
 std::uint64_t EdgeStage::bytes() const {
-    std::uint64_t bytes = 0;
+    std::uint64_t bytes = found_.size() * sizeof(PlacedContacts);
     for (std::size_t b = 0; b < block_count_; ++b) bytes += blocks_[b].contacts.capacity() * sizeof(Contact);
     return bytes;
 }
 
-void EdgeStage::merge(const Question& question, std::vector<Contact>& contacts) {
-    std::size_t added = 0;
-    for (std::size_t b = 0; b < block_count_; ++b) added += blocks_[b].contacts.size();
-    merged_.clear();
-    if (added == 0) return;
-    merged_.reserve(contacts.size() + added);
-    auto done = contacts.begin();
-    std::size_t in = 0; // the pair's place in its block
-    for (std::size_t k = 0; k < question.asked.size(); ++k) {
-        const std::size_t pair = question.asked[k].pair, number = pair / pairs_in_block;
-        const Block& block = blocks_[number];
-        in = k > 0 && question.asked[k - 1].pair / pairs_in_block == number ? in + 1 : 0;
-        const auto more = block.contacts.begin() + (in == 0 ? 0 : block.ends[in - 1]);
-        const auto more_end = block.contacts.begin() + block.ends[in];
-        if (more == more_end) continue;
-        const auto own = contacts.begin() + question.local.first(2 * pair);
-        const auto own_end = contacts.begin() + question.local.first(2 * pair + 2);
-        merged_.insert(merged_.end(), done, own);
-        std::ranges::merge(own, own_end, more, more_end, std::back_inserter(merged_), {}, &Contact::key, &Contact::key);
-        done = own_end;
+void EdgeStage::list_found(Executor& executor) {
+    std::size_t pairs = 0, contacts = 0;
+    for (Block& block : std::span(blocks_).first(block_count_)) {
+        block.first_pair = std::exchange(pairs, pairs + block.ends.size());
+        block.first_contact = std::exchange(contacts, contacts + block.contacts.size());
     }
-    merged_.insert(merged_.end(), done, contacts.end());
-    contacts.swap(merged_);
+    found_.resize(pairs);
+    executor.each(block_count_, 256, [&](std::uint32_t b) {
+        const Block& block = blocks_[b];
+        std::size_t to = block.first_pair, begin = 0;
+        for (const auto& [pair, end] : block.ends) {
+            found_[to++] = {pair, static_cast<std::uint32_t>(block.first_contact + begin),
+                            std::span(block.contacts).subspan(begin, end - begin)};
+            begin = end;
+        }
+    });
 }
 
 } // namespace raycontact

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "contacts/place.h"
 #include "edges/pair_edges.h"
 #include "pairs/by_pair.h"
 #include "pairs/near_edges.h"
@@ -8,20 +9,21 @@
 #include "speculative/speculative_vertices.h"
 
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace raycontact {
 
-/// Adds the contacts of edges, of bodies inside others (docs/internals/edges.md), and of what does not touch yet
-/// (docs/internals/speculative.md), to those of the vertices. It works on the host, in double, for every device: so its
-/// contacts are the same for all.
+/// Finds the contacts of edges, of bodies inside others (docs/internals/edges.md), and of what does not touch yet
+/// (docs/internals/speculative.md). It works on the host, in double, for every device: so its contacts are the same for
+/// all.
 class EdgeStage {
 public:
     /// local: the vertex contacts; speculative: those that do not touch yet. asked: in the order of the pairs.
-    /// contacts: those of vertices, placed and sorted; the new ones are sorted in.
     void run(const Update& update, const ByPair<kernels::LocalContact>& local, const SpeculativeVertices& speculative,
-             std::span<const AskedPair> asked, std::vector<Contact>& contacts);
-    /// Of what it found in the last step.
+             std::span<const AskedPair> asked);
+    /// What it found in the last step, in the order of the pairs.
+    std::span<const PlacedContacts> found() const { return found_; }
     std::uint64_t bytes() const;
 
 private:
@@ -32,8 +34,9 @@ private:
     };
     /// Pairs that one thread takes at once, and what it finds.
     struct Block {
-        std::vector<Contact> contacts;   ///< sorted, pair by pair
-        std::vector<std::uint32_t> ends; ///< of each pair's, in contacts
+        std::vector<Contact> contacts;                           ///< sorted, pair by pair
+        std::vector<std::pair<std::uint32_t, std::size_t>> ends; ///< pairs that have some, and where theirs end
+        std::size_t first_pair, first_contact;                   ///< among all
     };
     /// What the pairs of a step are asked with.
     struct Question {
@@ -44,11 +47,11 @@ private:
     };
     void find(Workspace& work, const Question& question, std::size_t number);
     void find(Workspace& work, Block& block, const Question& question, const AskedPair& asked);
-    void merge(const Question& question, std::vector<Contact>& contacts);
+    void list_found(Executor& executor);
 
     std::vector<Block> blocks_;
     std::size_t block_count_ = 0; ///< of the last step
-    std::vector<Contact> merged_;
+    std::vector<PlacedContacts> found_;
     std::vector<Workspace> work_;
 };
 

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "executor/running_sums.h"
+
+#include <algorithm>
 #include <cstdint>
-#include <numeric>
 #include <span>
 #include <vector>
 
@@ -13,32 +15,54 @@ template <class T>
 class ByPair {
 public:
     /// found: each names its pair by an index of `directed`, which has the directed indices of some of pair_count
-    /// pairs. Those of one pair keep their order.
-    void set(std::span<const T> found, std::span<const std::uint32_t> directed, std::size_t pair_count) {
-        ends_.assign(2 * pair_count + 1, 0);
-        for (const T& one : found) ++ends_[directed[one.pair] + 1];
-        std::partial_sum(ends_.begin(), ends_.end(), ends_.begin());
+    /// pairs. Those of one pair lie in a row, and keep their order.
+    void set(Executor& executor, std::span<const T> found, std::span<const std::uint32_t> directed,
+             std::size_t pair_count) {
+        firsts_.resize(2 * pair_count + 1);
+        executor.run(static_cast<std::uint32_t>(firsts_.size()), 1 << 15, [&](std::uint32_t begin, std::uint32_t end) {
+            std::fill(firsts_.begin() + begin, firsts_.begin() + end, 0);
+        });
+        each_row(executor, found, [&](std::uint32_t begin, std::uint32_t end) {
+            firsts_[directed[found[begin].pair] + 1] = end - begin;
+        });
+        sum_up(executor, std::span(firsts_));
         all_.resize(found.size());
-        for (const T& one : found) {
-            const std::uint32_t pair = directed[one.pair];
-            T& own = all_[ends_[pair]++];
-            own = one;
-            own.pair = pair;
-        }
+        each_row(executor, found, [&](std::uint32_t begin, std::uint32_t end) {
+            const std::uint32_t pair = directed[found[begin].pair];
+            for (T* own = &all_[firsts_[pair]]; begin < end; ++begin, ++own) {
+                *own = found[begin];
+                own->pair = pair;
+            }
+        });
     }
     std::span<const T> all() const { return all_; }
     /// Of a directed pair: the place of its first; all of them.
-    std::uint32_t first(std::size_t directed) const { return directed == 0 ? 0 : ends_[directed - 1]; }
+    std::uint32_t first(std::size_t directed) const { return firsts_[directed]; }
     std::span<const T> of(std::size_t directed) const {
-        return all().subspan(first(directed), ends_[directed] - first(directed));
+        return all().subspan(first(directed), firsts_[directed + 1] - first(directed));
     }
     std::span<T> of(std::size_t directed) {
-        return std::span(all_).subspan(first(directed), ends_[directed] - first(directed));
+        return std::span(all_).subspan(first(directed), firsts_[directed + 1] - first(directed));
     }
 
 private:
+    /// Calls work(begin, end) for the places of each pair's.
+    template <class Work>
+    static void each_row(Executor& executor, std::span<const T> found, Work&& work) {
+        const auto size = static_cast<std::uint32_t>(found.size());
+        const auto begins = [&](std::uint32_t i) { return i == 0 || i == size || found[i].pair != found[i - 1].pair; };
+        executor.run(size, 2048, [&](std::uint32_t begin, std::uint32_t end) {
+            while (!begins(begin)) ++begin;
+            for (std::uint32_t next = begin; begin < end; begin = next) {
+                while (!begins(++next)) {
+                }
+                work(begin, next);
+            }
+        });
+    }
+
     std::vector<T> all_;
-    std::vector<std::uint32_t> ends_; ///< by directed index
+    std::vector<std::uint32_t> firsts_{0}; ///< by directed index, and one more
 };
 
 } // namespace raycontact

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "part/part.h"
 
+#include "executor/rows.h"
 #include "free_all.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 namespace raycontact {
@@ -21,7 +23,7 @@ Part::Part(OpenDevice opened)
 
 void Part::trim() {
     pipeline_.trim();
-    free_all(placer_, edges_, last_, merged_);
+    free_all(placer_, edges_, last_, merged_, stays_, ends_);
     has_last_ = false;
 }
 
@@ -58,35 +60,57 @@ void Part::end(std::vector<Contact>& contacts) {
     if (may_rest_) add_resting(contacts);
     // Where most bodies move, hardly a pair will rest.
     has_last_ = knows_moves_ && can_rest(*settings_, device_->traits()) && moved_->list().size() < bodies_.size() / 4;
-    last_.clear();
-    if (has_last_) last_ = contacts;
+    copy_all(*executor_, has_last_ ? std::span<const Contact>(contacts) : std::span<const Contact>(), last_);
     may_rest_ = false; // what is asked after this is of new pairs
 }
 
-// Both are in order.
+// Puts the contacts of pairs that rest between those found. Both are in order; slices of the last step's hold whole
+// pairs.
 void Part::add_resting(std::vector<Contact>& contacts) {
-    merged_.clear();
-    auto found = contacts.begin();
-    std::size_t place = 0;
-    for (auto first = last_.begin(), next = first; first != last_.end(); first = next) {
-        const SlotPair pair = pair_of(*first);
-        while (next != last_.end() && pair_of(*next) == pair) ++next;
-        while (place < pairs_.size() && pairs_[place] < pair) ++place;
-        if (place == pairs_.size()) break;
-        if (pairs_[place] != pair || !pipeline_.rests(update(bodies_, pairs_), place)) continue;
-        const auto before = std::find_if(found, contacts.end(), [&](const Contact& c) { return pair_of(c) > pair; });
-        merged_.insert(merged_.end(), found, before);
-        merged_.insert(merged_.end(), first, next);
-        found = before;
-    }
-    merged_.insert(merged_.end(), found, contacts.end());
+    if (last_.empty()) return;
+    const RowSlices slices{last_.size()};
+    const auto belongs = [&](std::size_t i) { return pair_of(last_[i]) == pair_of(last_[i - 1]); };
+    // What was found before the i-th of the last step's is an earlier slice's.
+    const auto found_at = [&](std::size_t i) {
+        if (i == 0 || i == last_.size()) return i == 0 ? contacts.cbegin() : contacts.cend();
+        return std::ranges::lower_bound(std::as_const(contacts), pair_of(last_[i]), {}, pair_of);
+    };
+    const Update now = update(bodies_, pairs_);
+    stays_.resize(last_.size());
+    ends_.assign(slices.count(), 0);
+    slices.each(*executor_, belongs, [&](std::uint32_t slice, std::size_t begin, std::size_t end) {
+        auto place = std::ranges::lower_bound(pairs_, pair_of(last_[begin]));
+        for (std::size_t i = begin; i < end; ++i) {
+            if (i > begin && belongs(i)) {
+                stays_[i] = stays_[i - 1];
+            } else {
+                while (place != pairs_.end() && *place < pair_of(last_[i])) ++place;
+                stays_[i] = place != pairs_.end() && *place == pair_of(last_[i])
+                            && pipeline_.rests(now, static_cast<std::size_t>(place - pairs_.begin()));
+            }
+            ends_[slice] += static_cast<std::size_t>(stays_[i]);
+        }
+        ends_[slice] += static_cast<std::size_t>(found_at(end) - found_at(begin));
+    });
+    std::partial_sum(ends_.begin(), ends_.end(), ends_.begin());
+    merged_.resize(ends_.back());
+    slices.each(*executor_, belongs, [&](std::uint32_t slice, std::size_t begin, std::size_t end) {
+        auto to = merged_.begin() + static_cast<std::ptrdiff_t>(slice == 0 ? 0 : ends_[slice - 1]);
+        auto found = found_at(begin);
+        const auto found_end = found_at(end);
+        for (std::size_t i = begin; i < end; ++i) {
+            if (stays_[i] == 0) continue;
+            for (; found != found_end && pair_of(*found) < pair_of(last_[i]); ++found) *to++ = *found;
+            *to++ = last_[i];
+        }
+        std::copy(found, found_end, to);
+    });
     contacts.swap(merged_);
 }
 
 void Part::place(const Update& now, const Pipeline& found, std::vector<Contact>& contacts) {
-    placer_.run(*executor_, settings_->direction, now.bodies, now.pairs, found.contacts().all(), contacts);
-    if (!now.asks_near()) return;
-    edges_.run(now, found.contacts(), found.speculative(), found.asked(), contacts);
+    edges_.run(now, found.contacts(), found.speculative(), found.asked());
+    placer_.run(*executor_, settings_->direction, now.bodies, now.pairs, found.contacts(), edges_.found(), contacts);
 }
 
 void Part::take_over(std::span<const SlotPair> pairs, std::vector<Contact>& contacts) {

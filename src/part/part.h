@@ -71,6 +71,8 @@ private:
     std::vector<std::unique_ptr<Adopted>> adopted_;
 
     std::vector<Contact> last_, merged_; ///< last_: of all pairs, in the last step, if few bodies moved in it
+    std::vector<char> stays_;            ///< of last_: the contact's pair rests
+    std::vector<std::size_t> ends_;      ///< of what slices of last_ become
     MovedBodies::Seen seen_ = 0;
     bool has_last_ = false, may_rest_ = false;
     bool knows_moves_ = false;           ///< those since the last step: else any body may have moved

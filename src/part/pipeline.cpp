@@ -127,9 +127,10 @@ void Pipeline::end(const Update& update) {
         if (!all_points) cast_near(update, points_);
     }
     if (finds(update) == Finds::coherent) coherent_.keep(update);
-    local_.set(found_.values(), batch_.directed, update.pairs.size());
+    local_.set(update.executor, found_.values(), batch_.directed, update.pairs.size());
     find_speculative(update);
-    if (casts_edges_) near_.set(edges_.found().values(), pairs_of(update).directed(), update.pairs.size());
+    if (casts_edges_)
+        near_.set(update.executor, edges_.found().values(), pairs_of(update).directed(), update.pairs.size());
     if (update.settings.features == Features::edges && !casts_edges_) certified_.find_edges(update, local_, batch_);
     list_asked(update);
 }
@@ -139,7 +140,7 @@ void Pipeline::find_speculative(const Update& update) {
     asked_.clear();
     if (!update.settings.is_speculative()) return speculative_.clear();
     if (casts_points_)
-        near_points_.set(points_.found().values(), pairs_of(update).directed(), update.pairs.size());
+        near_points_.set(update.executor, points_.found().values(), pairs_of(update).directed(), update.pairs.size());
     else
         certified_.find_points(update, batch_);
     for (std::uint32_t i = 0; i < update.pairs.size(); ++i) {

@@ -25,7 +25,7 @@ void NearLists::find(const Update& update, std::span<const Search> due, Certifie
     if (due.empty()) {
         resize(update.device, 0, pairs_, next_, margins_, ahead_, least_);
         directed_.clear();
-        found_.set({}, {}, 0);
+        found_.set(update.executor, {}, {}, 0);
         return rays_.rest();
     }
     for (std::size_t first = 0; first < due.size(); first += pairs_at_once)
@@ -58,7 +58,7 @@ void NearLists::find_some(const Update& update, std::span<const Search> due, Cer
         update.device.queue().read(pieces);
         check_sums(batch.sums);
     } while (!rays_.had_room(update.device, batch));
-    found_.set(rays_.found().values(), directed_, due.size());
+    found_.set(update.executor, rays_.found().values(), directed_, due.size());
     for (std::size_t k = 0; k < due.size(); ++k) {
         const auto [a, b] = update.pairs[due[k].pair];
         const double clear = std::min(

@@ -17,6 +17,7 @@ using Key = std::tuple<std::uint32_t, std::uint32_t, Side, std::uint32_t>;
 TEST(Changes, AreTheDifferencesOfTwoSteps) {
     reference::Random random(1);
     Changes changes;
+    Executor executor(2);
     std::set<Key> before, touched; // all of the last step; those that touched
     for (int step = 0; step < 500; ++step) {
         std::set<Key> now, touches;
@@ -38,7 +39,7 @@ TEST(Changes, AreTheDifferencesOfTwoSteps) {
             if (contact.depth > 0) touches.insert({a, b, body, vertex});
             contacts.push_back(contact);
         }
-        changes.mark(contacts);
+        changes.mark(executor, contacts);
         std::size_t came = 0;
         for (const Contact& c : contacts) {
             const auto& known = c.is_speculative() ? before : touched;
@@ -76,8 +77,9 @@ TEST(Changes, LostContactsTellAllThatTheirKeyTells) {
     }
     EXPECT_TRUE(std::ranges::is_sorted(contacts, std::ranges::less_equal(), &Contact::key)); // and no key twice
     Changes changes;
-    changes.mark(contacts);
-    changes.mark({});
+    Executor executor(2);
+    changes.mark(executor, contacts);
+    changes.mark(executor, {});
     ASSERT_EQ(changes.lost().size(), features.size());
     for (std::size_t i = 0; i < features.size(); ++i) {
         const LostContact& lost = changes.lost()[i];

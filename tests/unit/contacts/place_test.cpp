@@ -13,6 +13,15 @@
 namespace raycontact {
 namespace {
 
+ByPair<kernels::LocalContact> by_pair(Executor& executor, std::span<const kernels::LocalContact> local,
+                                      std::span<const SlotPair> pairs) {
+    std::vector<std::uint32_t> directed(2 * pairs.size());
+    std::iota(directed.begin(), directed.end(), 0u);
+    ByPair<kernels::LocalContact> sorted;
+    sorted.set(executor, local, directed, pairs.size());
+    return sorted;
+}
+
 // Pairs of so many contacts are sorted in different ways.
 TEST(Placer, SortsTheContactsOfEachPair) {
     const std::shared_ptr<const Shape> shape = Shape::make(scenes::scene_model("gear", 902).mesh);
@@ -39,7 +48,7 @@ TEST(Placer, SortsTheContactsOfEachPair) {
     std::vector<Contact> contacts(local.size()); // as a step with edges leaves it to the next
     for (Contact& contact : contacts) contact.feature.kind = FeatureKind::edges;
     Placer placer;
-    placer.run(*opened.executor, Direction::ray, bodies, pairs, local, contacts);
+    placer.run(*opened.executor, Direction::ray, bodies, pairs, by_pair(*opened.executor, local, pairs), {}, contacts);
 
     std::sort(local.begin(), local.end(),
               [](const auto& a, const auto& b) { return std::pair(a.pair, a.vertex) < std::pair(b.pair, b.vertex); });
@@ -64,7 +73,7 @@ TEST(Placer, MakesNormalDepthAndWeightByTheDirection) {
     const std::vector<kernels::LocalContact> local{{0, 7, 3, 1, 0.5f, {1, 0, 0}}, {1, 9, 3, 1, 0.5f, {1, 0, 0}}};
     const auto place = [&](Direction direction) {
         std::vector<Contact> contacts;
-        Placer().run(*opened.executor, direction, bodies, pairs, local, contacts);
+        Placer().run(*opened.executor, direction, bodies, pairs, by_pair(*opened.executor, local, pairs), {}, contacts);
         return contacts;
     };
     using Normal = Vec3f;

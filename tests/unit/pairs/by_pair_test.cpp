@@ -15,6 +15,7 @@ namespace {
 // Directed pairs in slots that are in any order, as after many pairs have come and gone, or in theirs.
 TEST(ByPair, IsInTheOrderOfThePairsWhateverTheirSlots) {
     reference::Random random(1);
+    Executor executor(2);
     ByPair<kernels::LocalContact> all;
     for (int round = 0; round < 300; ++round) {
         const std::uint32_t pairs = random.below(40);
@@ -30,7 +31,7 @@ TEST(ByPair, IsInTheOrderOfThePairsWhateverTheirSlots) {
                 found.push_back({i, vertex, 0, 0, 0, {}});
                 expected.emplace_back(directed[i], vertex++);
             }
-        all.set(found, directed, pairs);
+        all.set(executor, found, directed, pairs);
         std::sort(expected.begin(), expected.end()); // those of a pair keep their order
         ASSERT_EQ(all.all().size(), expected.size());
         for (std::uint32_t d = 0; d < 2 * pairs; ++d)
