@@ -68,37 +68,17 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, const MovedBodies& mo
     count(pairs.size(), stats);
     stats.contacts_reduced = reducer_.left_out().size();
     stats.details.contacts_merged = reducer_.merged();
-    stats.contacts_new = changes_.new_count();
+    const Changes::Sums& sums = changes_.sums();
+    stats.contacts_new = sums.fresh;
     stats.contacts_lost = changes_.lost().size();
-    sum(contacts, stats);
+    stats.contacts_speculative = sums.speculative;
+    stats.contacts = contacts.size() - sums.speculative;
+    stats.details.ray_length = sums.ray_length;
+    stats.depth_max = sums.depth_max;
     for (const Contact& contact : reducer_.left_out())
         stats.depth_max = std::max(stats.depth_max, double(contact.depth));
     trim(stats.pair_bytes, contacts);
     stats.narrow_ms = milliseconds_since(start);
-}
-
-// By slices whose bounds no thread decides: sums of floats keep their bits.
-void NarrowPhase::sum(std::span<const Contact> contacts, StepStats& stats) {
-    constexpr std::size_t at_once = 4096;
-    sums_.assign((contacts.size() + at_once - 1) / at_once, {});
-    parts_.executor().each(sums_.size(), 1, [&](std::uint32_t i) {
-        Sums own;
-        for (const Contact& contact :
-             contacts.subspan(i * at_once).first(std::min(at_once, contacts.size() - i * at_once))) {
-            if (contact.is_speculative())
-                ++own.speculative;
-            else
-                own.ray_length += double(contact.ray_length);
-            own.depth_max = std::max(own.depth_max, double(contact.depth));
-        }
-        sums_[i] = own;
-    });
-    for (const Sums& own : sums_) {
-        stats.contacts_speculative += own.speculative;
-        stats.details.ray_length += own.ray_length;
-        stats.depth_max = std::max(stats.depth_max, own.depth_max);
-    }
-    stats.contacts = contacts.size() - stats.contacts_speculative;
 }
 
 void NarrowPhase::rest(StepStats& stats) {

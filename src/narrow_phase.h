@@ -40,18 +40,12 @@ private:
         std::vector<Contact> contacts;
         double ms = 0;
     };
-    /// Of some contacts.
-    struct Sums {
-        std::uint64_t speculative = 0;
-        double ray_length = 0, depth_max = 0;
-    };
     bool move_pairs(const Balance::Move& move, std::span<const PlacedBody> bodies, StepStats& stats);
     void find(std::size_t part, std::span<const PlacedBody> bodies, const MovedBodies& moved,
               std::vector<Contact>& contacts);
     std::vector<std::size_t> replace(const std::vector<std::size_t>& failed, StepStats& stats);
     std::vector<std::vector<SlotPair>> give_away(const std::vector<std::size_t>& failed, StepStats& stats);
     void merge(std::vector<Contact>& contacts);
-    void sum(std::span<const Contact> contacts, StepStats& stats);
     void count(std::size_t pair_count, StepStats& stats);
     void trim(std::uint64_t pair_bytes, std::vector<Contact>& contacts);
 
@@ -62,7 +56,6 @@ private:
     std::vector<Found> found_;                   ///< by part; without contacts once it is dropped
     std::vector<std::span<const Contact>> rest_; ///< still to be merged
     ContactReducer reducer_;
-    std::vector<Sums> sums_;
     Changes changes_;
     std::uint64_t most_bytes_ = 0; ///< StepStats::pair_bytes, the most since memory was last trimmed
     unsigned trims_ = 0;           ///< still to be done, one a step

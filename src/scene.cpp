@@ -189,23 +189,25 @@ struct Scene::State {
 
     // given: in any order, the two bodies of a pair either way round, duplicates allowed.
     void set_pairs(std::span<const Pair> given) {
-        const bool same = std::equal(given.begin(), given.end(), pairs.begin(), pairs.end());
-        if (same && pairs_stand) return; // an earlier step has checked them
-        for (const Pair& pair : given) check_pair(pair, static_cast<std::size_t>(&pair - given.data()));
-        if (!same) {
-            sorted.assign(given.begin(), given.end());
-            for (Pair& pair : sorted)
-                if (pair.first.slot > pair.second.slot) std::swap(pair.first, pair.second);
-            if (!std::is_sorted(sorted.begin(), sorted.end(), by_slots))
-                std::sort(sorted.begin(), sorted.end(), by_slots);
-            sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
-            if (sorted == pairs && pairs_stand) return;
-            keep_pairs();
-            pairs.swap(sorted);
+        if (pairs_stand && std::equal(given.begin(), given.end(), pairs.begin(), pairs.end())) return;
+        Executor& executor = narrow.parts().executor();
+        std::atomic<bool> faulty = false;
+        given_pairs.resize(given.size());
+        executor.each(given.size(), 4096, [&](std::uint32_t i) {
+            const auto& [a, b] = given[i];
+            if (a == b || !slots.is_there(a) || !slots.is_there(b)) faulty = true;
+            given_pairs[i] = std::minmax(a.slot, b.slot);
+        });
+        for (std::size_t i = 0; faulty && i < given.size(); ++i) check_pair(given[i], i);
+        if (!std::is_sorted(given_pairs.begin(), given_pairs.end())) {
+            sorter.run(executor, bodies.size(), given_pairs, sorted);
+            given_pairs.swap(sorted);
         }
+        given_pairs.erase(std::unique(given_pairs.begin(), given_pairs.end()), given_pairs.end());
+        if (pairs_stand && given_pairs == slot_pairs) return;
         pairs_stand = pairs_found = false;
-        slot_pairs.clear();
-        for (const auto& [a, b] : pairs) slot_pairs.emplace_back(a.slot, b.slot);
+        slot_pairs.swap(given_pairs);
+        name_pairs();
         pairs_stand = true;
     }
 
@@ -289,7 +291,7 @@ struct Scene::State {
         world.trim();
         broad_phase.trim();
         pairs.shrink_to_fit();
-        free_all(last_pairs, sorted);
+        free_all(last_pairs, given_pairs, sorted, sorter);
         slot_pairs.shrink_to_fit();
     }
 
@@ -321,9 +323,10 @@ struct Scene::State {
     WorldBoxes world;
     std::mutex refreshing; ///< world
     BroadPhase broad_phase;
-    std::vector<Pair> pairs, last_pairs; ///< last_pairs: of the last step whose pairs were others
-    std::vector<Pair> sorted;            ///< of set_pairs()
-    std::vector<SlotPair> slot_pairs;    ///< `pairs` by slot
+    std::vector<Pair> pairs, last_pairs;       ///< last_pairs: of the last step whose pairs were others
+    std::vector<SlotPair> slot_pairs;          ///< `pairs` by slot
+    std::vector<SlotPair> given_pairs, sorted; ///< of set_pairs()
+    PairSorter sorter;
     std::shared_ptr<std::vector<Contact>> contacts = std::make_shared<std::vector<Contact>>();
     StepStats stats;
     static constexpr std::uint64_t wanted = std::numeric_limits<std::uint64_t>::max();

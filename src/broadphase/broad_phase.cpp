@@ -2,8 +2,8 @@
 #include "broadphase/broad_phase.h"
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
-#include <iterator>
 #include <numeric>
 #include <utility>
 
@@ -44,7 +44,8 @@ bool BroadPhase::update(Executor& executor, BoxTree& tree, const BroadPhaseInput
     const Question asked{tree, input};
     run(executor, changed.size(),
         [&](Found& found, std::uint32_t i) { query(found, asked, changed[i], tree.levels() - 1, 0); });
-    const bool differ = replace(pairs);
+    gather(executor, tree.size(), come_);
+    const bool differ = replace(executor, pairs);
     for (const BodySlot body : changed) is_changed_[body] = 0;
     return differ;
 }
@@ -124,38 +125,57 @@ void BroadPhase::query(Found& found, const Question& asked, BodySlot body, std::
     }
 }
 
-// Sorted by the first body, each body's by the second.
 void BroadPhase::gather(Executor& executor, std::size_t slots, std::vector<SlotPair>& pairs) {
-    firsts_.assign(slots + 1, 0);
-    for (const Found& found : found_)
-        for (const SlotPair& pair : found.pairs) ++firsts_[pair.first + std::size_t{1}];
-    std::partial_sum(firsts_.begin(), firsts_.end(), firsts_.begin());
-    pairs.resize(firsts_.back());
-    for (const Found& found : found_)
-        for (const SlotPair& pair : found.pairs) pairs[firsts_[pair.first]++] = pair;
-    // Now each counts to its end.
-    executor.each(slots, 1024, [&](std::uint32_t body) {
-        const std::size_t begin = body == 0 ? 0 : firsts_[body - std::size_t{1}];
-        std::sort(pairs.begin() + std::ptrdiff_t(begin), pairs.begin() + std::ptrdiff_t(firsts_[body]));
-    });
+    lists_.clear();
+    for (const Found& found : found_) lists_.emplace_back(found.pairs);
+    sorter_.run(executor, slots, lists_, pairs);
 }
 
 // Puts what was found in the place of all pairs of boxes that changed. Mostly it is the same.
-bool BroadPhase::replace(std::vector<SlotPair>& pairs) {
-    come_.clear();
-    for (const Found& found : found_) come_.insert(come_.end(), found.pairs.begin(), found.pairs.end());
-    std::ranges::sort(come_);
-    gone_.clear();
-    std::ranges::copy_if(pairs, std::back_inserter(gone_), [&](const SlotPair& pair) { return is_changed(pair); });
-    if (come_ == gone_) return false;
-    next_.clear();
-    auto more = come_.begin();
-    for (const SlotPair& pair : pairs) {
-        if (is_changed(pair)) continue;
-        for (; more != come_.end() && *more < pair; ++more) next_.push_back(*more);
-        next_.push_back(pair);
-    }
-    next_.insert(next_.end(), more, come_.end());
+bool BroadPhase::replace(Executor& executor, std::vector<SlotPair>& pairs) {
+    constexpr std::size_t at_once = 4096;
+    const std::size_t slices = pairs.size() / at_once + 1;
+    const auto of_slice = [&](std::size_t s) {
+        const std::size_t begin = std::min(pairs.size(), s * at_once);
+        return std::span(pairs).subspan(begin, std::min(at_once, pairs.size() - begin));
+    };
+    // What comes up to the first pair of the next slice.
+    const auto come_of = [&](std::size_t s) {
+        const auto at = [&](std::size_t slice) {
+            if (slice == 0 || slice >= slices) return slice == 0 ? come_.begin() : come_.end();
+            const auto own = of_slice(slice);
+            return own.empty() ? come_.end() : std::lower_bound(come_.begin(), come_.end(), own.front());
+        };
+        return std::span(at(s), at(s + 1));
+    };
+    ends_.assign(slices, 0);
+    std::atomic<bool> differ = false;
+    executor.each(slices, 1, [&](std::uint32_t s) {
+        const auto come = come_of(s);
+        std::size_t gone = 0;
+        bool same = true;
+        for (const SlotPair& pair : of_slice(s)) {
+            if (!is_changed(pair)) continue;
+            same = same && gone < come.size() && come[gone] == pair;
+            ++gone;
+        }
+        if (!same || gone != come.size()) differ = true;
+        ends_[s] = of_slice(s).size() - gone + come.size();
+    });
+    if (!differ) return false;
+    std::partial_sum(ends_.begin(), ends_.end(), ends_.begin());
+    next_.resize(ends_.back());
+    executor.each(slices, 1, [&](std::uint32_t s) {
+        auto to = next_.begin() + std::ptrdiff_t(s == 0 ? 0 : ends_[s - 1]);
+        const auto come = come_of(s);
+        auto more = come.begin();
+        for (const SlotPair& pair : of_slice(s)) {
+            if (is_changed(pair)) continue;
+            for (; more != come.end() && *more < pair; ++more) *to++ = *more;
+            *to++ = pair;
+        }
+        std::copy(more, come.end(), to);
+    });
     pairs.swap(next_);
     return true;
 }

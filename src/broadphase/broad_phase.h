@@ -2,6 +2,7 @@
 #pragma once
 
 #include "broadphase/box_tree.h"
+#include "broadphase/sort_pairs.h"
 
 #include <cstdint>
 #include <span>
@@ -59,14 +60,16 @@ private:
     static void test(Found& found, const Question& asked, std::uint32_t node, std::uint32_t other);
     void query(Found& found, const Question& asked, BodySlot body, std::size_t level, std::uint32_t at) const;
     void gather(Executor& executor, std::size_t slots, std::vector<SlotPair>& pairs);
-    bool replace(std::vector<SlotPair>& pairs);
+    bool replace(Executor& executor, std::vector<SlotPair>& pairs);
     bool is_changed(const SlotPair& pair) const { return (is_changed_[pair.first] | is_changed_[pair.second]) != 0; }
 
     std::vector<Found> found_;
-    std::vector<std::size_t> firsts_;                            ///< by slot: its first pair
+    std::vector<std::span<const SlotPair>> lists_; ///< of found_
+    PairSorter sorter_;
     std::uint64_t tests_when_sorted_ = 0, sorts_when_found_ = 0; ///< of a find(); BoxTree::sorts() then
     std::vector<char> is_changed_;                               ///< by slot
-    std::vector<SlotPair> gone_, come_, next_;
+    std::vector<SlotPair> come_, next_;
+    std::vector<std::size_t> ends_; ///< of what slices of the pairs become
 };
 
 } // namespace raycontact

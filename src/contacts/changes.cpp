@@ -26,56 +26,67 @@ ContactFeature feature_of(std::uint64_t key) {
 
 } // namespace
 
-void Changes::compare(std::span<const Known> previous, std::span<Contact> contacts, Slice& slice) const {
-    const auto touched = [&](const Known& known) { return touched_[std::size_t(&known - previous_.data())] != 0; };
-    const auto lose = [&](const Known& known) {
-        if (touched(known)) slice.lost.push_back({known.body_a, known.body_b, feature_of(known.key)});
+void Changes::Sums::add(const Sums& other) {
+    fresh += other.fresh;
+    speculative += other.speculative;
+    ray_length += other.ray_length;
+    depth_max = std::max(depth_max, other.depth_max);
+}
+
+// The contacts from the first on, with those of the last step that are of the same pairs, or of pairs that are gone.
+void Changes::compare(std::size_t old, std::size_t old_end, std::span<Contact> contacts, std::size_t first,
+                      Slice& slice) {
+    const auto lose = [&](std::size_t i) {
+        if (touched_[i] != 0)
+            slice.lost.push_back({previous_[i].body_a, previous_[i].body_b, feature_of(previous_[i].key)});
     };
-    auto old = previous.begin();
     for (Contact& contact : contacts) {
-        const ContactOrder order = order_of(contact);
+        const Known own{contact.body_a, contact.body_b, contact.key()};
         const bool touches = !contact.is_speculative();
-        for (; old != previous.end() && old->order() < order; ++old) lose(*old);
-        const bool known = old != previous.end() && old->order() == order;
-        contact.is_new = !known || (touches && !touched(*old));
-        if (known && !touches) lose(*old);
+        for (; old < old_end && previous_[old].order() < own.order(); ++old) lose(old);
+        const bool known = old < old_end && previous_[old].order() == own.order();
+        contact.is_new = !known || (touches && touched_[old] == 0);
+        if (known && !touches) lose(old);
         if (known) ++old;
-        if (touches && contact.is_new) ++slice.new_count;
+        next_[first] = own;
+        next_touched_[first++] = touches ? 1 : 0;
+        slice.sums.add({std::uint64_t{touches && contact.is_new}, std::uint64_t{!touches},
+                        touches ? double(contact.ray_length) : 0, double(contact.depth)});
     }
-    for (; old != previous.end(); ++old) lose(*old);
+    for (; old < old_end; ++old) lose(old);
 }
 
 void Changes::mark(Executor& executor, std::span<Contact> contacts) {
     const RowSlices slices{contacts.size()};
+    next_.resize(contacts.size());
+    next_touched_.resize(contacts.size());
     slices_.resize(std::max<std::size_t>(1, slices.count()));
-    for (Slice& slice : slices_) slice.lost.clear(), slice.new_count = 0;
+    for (Slice& slice : slices_) {
+        slice.lost.clear();
+        slice.sums = {};
+    }
     const auto pair_at = [&](std::size_t i) { return order_of(contacts[i]).first; };
-    // The old ones up to the first contact of a slice are an earlier one's.
+    const auto pair_of_known = [](const Known& known) { return known.order().first; };
+    // Those of the last step up to the pair of the i-th contact are an earlier slice's.
     const auto old_at = [&](std::size_t i) {
-        if (i == 0 || i == contacts.size()) return i == 0 ? previous_.begin() : previous_.end();
-        return std::ranges::lower_bound(previous_, pair_at(i), {},
-                                        [](const Known& known) { return known.order().first; });
+        if (i == 0 || i == contacts.size()) return i == 0 ? 0 : previous_.size();
+        const auto at = std::ranges::lower_bound(previous_, pair_at(i), {}, pair_of_known);
+        return static_cast<std::size_t>(at - previous_.begin());
     };
-    if (contacts.empty()) compare(previous_, contacts, slices_.front());
+    if (contacts.empty()) compare(0, previous_.size(), contacts, 0, slices_.front());
     slices.each(
         executor, [&](std::size_t i) { return pair_at(i) == pair_at(i - 1); },
         [&](std::uint32_t slice, std::size_t begin, std::size_t end) {
-            compare({old_at(begin), old_at(end)}, contacts.subspan(begin, end - begin), slices_[slice]);
+            compare(old_at(begin), old_at(end), contacts.subspan(begin, end - begin), begin, slices_[slice]);
         });
     lost_.clear();
-    new_count_ = 0;
+    sums_ = {};
     for (const Slice& slice : slices_) {
         lost_.insert(lost_.end(), slice.lost.begin(), slice.lost.end());
-        new_count_ += slice.new_count;
+        sums_.add(slice.sums);
     }
-    previous_.reserve(contacts.size()); // either may throw: then both stay as they are
-    touched_.reserve(contacts.size());
-    previous_.resize(contacts.size());
-    touched_.resize(contacts.size());
-    executor.each(contacts.size(), 4096, [&](std::uint32_t i) {
-        previous_[i] = {contacts[i].body_a, contacts[i].body_b, contacts[i].key()};
-        touched_[i] = contacts[i].is_speculative() ? 0 : 1;
-    });
+    previous_.swap(next_);
+    touched_.swap(next_touched_);
 }
 
 } // namespace raycontact

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "executor/executor.h"
+#include "free_all.h"
 
 #include <raycontact/contact.h>
 
@@ -35,34 +36,39 @@ public:
     std::span<const Known> previous() const { return previous_; }
     /// contacts: sorted; sets is_new.
     void mark(Executor& executor, std::span<Contact> contacts);
+    /// Of the contacts that were marked.
+    struct Sums {
+        std::uint64_t fresh = 0, speculative = 0; ///< fresh: new ones that touch
+        double ray_length = 0, depth_max = 0;     ///< metres; ray_length: of those that touch
+        void add(const Sums& other);
+    };
+    const Sums& sums() const { return sums_; }
     /// All are as in the last step.
     void rest() {
         lost_.clear();
-        new_count_ = 0;
+        sums_.fresh = 0;
     }
     std::span<const LostContact> lost() const { return lost_; }
-    /// Of those that touch.
-    std::size_t new_count() const { return new_count_; }
     void trim() {
         previous_.shrink_to_fit();
-        lost_.shrink_to_fit();
         touched_.shrink_to_fit();
-        slices_ = {};
+        lost_.shrink_to_fit();
+        free_all(next_, next_touched_, slices_);
     }
 
 private:
-    /// What some pairs in a row lost and got.
+    /// What is found of some pairs in a row.
     struct Slice {
         std::vector<LostContact> lost;
-        std::size_t new_count;
+        Sums sums;
     };
-    void compare(std::span<const Known> previous, std::span<Contact> contacts, Slice& slice) const;
+    void compare(std::size_t old, std::size_t old_end, std::span<Contact> contacts, std::size_t first, Slice& slice);
 
+    std::vector<Known> previous_, next_;
+    std::vector<std::uint8_t> touched_, next_touched_; ///< by place in previous_, next_
     std::vector<Slice> slices_;
-    std::vector<Known> previous_;
     std::vector<LostContact> lost_;
-    std::vector<std::uint8_t> touched_; ///< by place in previous_
-    std::size_t new_count_ = 0;
+    Sums sums_;
 };
 
 } // namespace raycontact

@@ -47,7 +47,7 @@ void DevicePairs::list_changes(const Update& update) {
     const auto open = [&](std::size_t i, kernels::uint slot) {
         change(slot, {update.pairs[i].first, update.pairs[i].second});
     };
-    const bool changed = slots_.match(update.pairs, keep, open, [&](kernels::uint slot) {
+    const bool changed = slots_.match(update.executor, update.pairs, keep, open, [&](kernels::uint slot) {
         change(slot, {NONE, NONE});
     });
     if (!changed) return;
@@ -57,11 +57,11 @@ void DevicePairs::list_changes(const Update& update) {
     changed_.erase(std::unique(changed_.begin(), changed_.end(), same_slot), changed_.end());
     for (auto& [slot, bodies] : changed_) bodies = pairs_[slot];
     directed_.resize(2 * pairs_.size());
-    for (std::uint32_t i = 0; i < update.pairs.size(); ++i) {
+    update.executor.each(update.pairs.size(), 8192, [&](std::uint32_t i) {
         const std::size_t slot = slots_.slot(i);
         directed_[2 * slot] = 2 * i;
         directed_[2 * slot + 1] = 2 * i + 1;
-    }
+    });
 }
 
 void DevicePairs::place(const Update& update, bool next) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "executor/rows.h"
 #include "free_all.h"
 #include "slot_pair.h"
 
@@ -20,39 +21,34 @@ inline bool is_mostly_empty(std::size_t slots, std::size_t used) {
 /// at once.
 class PairSlots {
 public:
-    /// pairs: sorted, without duplicates. Calls, in their order, kept(old, now, n) for n pairs in a row that stay,
-    /// opened(now, slot) for each new pair and closed(slot) for each that is gone; old and now are places in the last
-    /// list and in `pairs`. Returns false, without any call, if the pairs are the same as before.
+    /// pairs: sorted, without duplicates. Calls closed(slot) for each pair that is gone, then opened(now, slot) for
+    /// each new one, both in their order; then, on all threads, kept(old, now, n) for n pairs in a row that stay. old
+    /// and now are places in the last list and in `pairs`. Returns false, without any call, if the pairs are the same
+    /// as before.
     template <class Kept, class Opened, class Closed>
-    bool match(std::span<const SlotPair> pairs, Kept&& kept, Opened&& opened, Closed&& closed) {
+    bool match(Executor& executor, std::span<const SlotPair> pairs, Kept&& kept, Opened&& opened, Closed&& closed) {
         if (std::equal(pairs.begin(), pairs.end(), open_.begin(), open_.end())) return false;
         next_.resize(pairs.size());
-        std::size_t old = 0;
-        const auto close = [&] {
-            closed(slots_[old]);
-            free_.push_back(slots_[old++]);
-        };
-        for (std::size_t i = 0; i < pairs.size();) {
-            // Most pairs stay, in runs.
-            const std::size_t most = std::min(pairs.size() - i, open_.size() - old);
-            std::size_t same = 0;
-            while (same < most && pairs[i + same] == open_[old + same]) ++same;
-            std::copy_n(slots_.begin() + std::ptrdiff_t(old), same, next_.begin() + std::ptrdiff_t(i));
-            if (same > 0) kept(old, i, same);
-            i += same;
-            old += same;
-            if (i == pairs.size()) break;
-            if (old < open_.size() && open_[old] < pairs[i]) {
-                close();
-                continue;
+        const std::size_t count = pairs.size() / slice_size + 1;
+        if (slices_.size() < count) slices_.resize(count);
+        executor.each(count, 1, [&](std::uint32_t s) { compare(pairs, s, s + 1 == count); });
+        const std::span<const Slice> slices = std::span(slices_).first(count);
+        for (const Slice& slice : slices)
+            for (const std::size_t old : slice.closed) {
+                closed(slots_[old]);
+                free_.push_back(slots_[old]);
             }
-            next_[i] = new_slot();
-            opened(i, next_[i]);
-            ++i;
-        }
-        while (old < open_.size()) close();
+        for (const Slice& slice : slices)
+            for (const std::size_t now : slice.opened) opened(now, next_[now] = new_slot());
+        executor.each(count, 1, [&](std::uint32_t s) {
+            for (const Run& run : slices[s].kept) {
+                std::copy_n(slots_.begin() + std::ptrdiff_t(run.old), run.count,
+                            next_.begin() + std::ptrdiff_t(run.now));
+                kept(run.old, run.now, run.count);
+            }
+        });
         slots_.swap(next_);
-        open_.assign(pairs.begin(), pairs.end());
+        copy_all(executor, pairs, open_);
         return true;
     }
 
@@ -71,8 +67,7 @@ public:
             slots_[i] = static_cast<std::uint32_t>(i);
         }
         end_ = static_cast<std::uint32_t>(slots_.size());
-        free_all(next_);
-        free_all(free_);
+        free_all(next_, free_, slices_);
         open_.shrink_to_fit();
         slots_.shrink_to_fit();
     }
@@ -80,6 +75,43 @@ public:
     void clear() { *this = {}; }
 
 private:
+    static constexpr std::size_t slice_size = 4096; // pairs
+    struct Run {
+        std::size_t old, now, count;
+    };
+    /// What became of pairs in a row.
+    struct Slice {
+        std::vector<Run> kept;
+        std::vector<std::size_t> opened, closed; ///< places among the new, the old
+    };
+
+    // The s-th slice of `pairs`, and the old ones from its first pair up to that of the next slice.
+    void compare(std::span<const SlotPair> pairs, std::size_t s, bool last) {
+        Slice& slice = slices_[s];
+        slice.kept.clear();
+        slice.opened.clear();
+        slice.closed.clear();
+        const auto old_at = [&](std::size_t now) {
+            return static_cast<std::size_t>(std::lower_bound(open_.begin(), open_.end(), pairs[now]) - open_.begin());
+        };
+        std::size_t now = s * slice_size, old = s == 0 ? 0 : now < pairs.size() ? old_at(now) : open_.size();
+        const std::size_t end = std::min(pairs.size(), now + slice_size);
+        const std::size_t old_end = last || end == pairs.size() ? open_.size() : old_at(end);
+        while (now < end || old < old_end) {
+            // Most pairs stay, in runs.
+            const std::size_t most = std::min(end - now, old_end - old);
+            std::size_t same = 0;
+            while (same < most && pairs[now + same] == open_[old + same]) ++same;
+            if (same > 0) slice.kept.push_back({old, now, same});
+            now += same;
+            old += same;
+            if (old < old_end && (now == end || open_[old] < pairs[now]))
+                slice.closed.push_back(old++);
+            else if (now < end && (old == old_end || pairs[now] < open_[old]))
+                slice.opened.push_back(now++);
+        }
+    }
+
     std::uint32_t new_slot() {
         if (free_.empty()) return end_++;
         const std::uint32_t slot = free_.back();
@@ -87,6 +119,7 @@ private:
         return slot;
     }
 
+    std::vector<Slice> slices_; ///< of match()
     std::vector<SlotPair> open_;
     std::vector<std::uint32_t> slots_, next_, free_;
     std::uint32_t end_ = 0;

@@ -20,7 +20,7 @@ class PairTable {
 public:
     /// pairs: sorted, without duplicates. New pairs get a fresh state; calls closed(state) for each that is gone.
     template <class Closed>
-    void match(std::span<const SlotPair> pairs, Closed&& closed) {
+    void match(Executor& executor, std::span<const SlotPair> pairs, Closed&& closed) {
         next_hot_.resize(pairs.size());
         std::ranges::sort(incoming_, {}, &Incoming::pair);
         const auto keep = [this](std::size_t old, std::size_t now, std::size_t count) {
@@ -33,7 +33,8 @@ public:
             states_[slot] = fresh ? State{} : moved->state;
             next_hot_[now] = fresh ? Hot{} : moved->hot;
         };
-        const bool changed = slots_.match(pairs, keep, open, [&](std::uint32_t slot) { closed(states_[slot]); });
+        const bool changed =
+            slots_.match(executor, pairs, keep, open, [&](std::uint32_t slot) { closed(states_[slot]); });
         if (changed) hot_.swap(next_hot_);
         incoming_.clear();
         if (is_mostly_empty(slots_.end(), pairs.size())) compact();

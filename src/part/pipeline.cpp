@@ -4,6 +4,8 @@
 #include "device/launch.h"
 #include "free_all.h"
 
+#include <algorithm>
+
 namespace raycontact {
 
 namespace {
@@ -43,7 +45,8 @@ void Pipeline::trim() {
     coherent_.trim();
     edges_ = NearRays(edges_.sources());
     points_ = NearRays(points_.sources());
-    free_all(batch_, margins_, device_margins_, found_, local_, near_, near_points_, speculative_, asked_);
+    free_all(batch_, margins_, device_margins_, found_, local_, near_, near_points_, speculative_, asked_,
+             asked_slices_);
 }
 
 // Turns hits into contacts in the targets' frames: counts them and writes them.
@@ -143,12 +146,11 @@ void Pipeline::find_speculative(const Update& update) {
         near_points_.set(update.executor, points_.found().values(), pairs_of(update).directed(), update.pairs.size());
     else
         certified_.find_points(update, batch_);
-    for (std::uint32_t i = 0; i < update.pairs.size(); ++i) {
-        if (rests(update, i)) continue;
-        if (!casts_points_ && certified_.has_points(i)) asked_.push_back({i, false, certified_.points(i)});
-        if (!casts_points_ || near_points_.first(2 * i) == near_points_.first(2 * i + 2)) continue;
-        asked_.push_back({i, false, {near_points_.of(2 * i), near_points_.of(2 * i + 1)}});
-    }
+    list(update, [&](std::uint32_t i, std::vector<AskedPair>& asked) {
+        if (!casts_points_ && certified_.has_points(i)) asked.push_back({i, false, certified_.points(i)});
+        if (!casts_points_ || near_points_.first(2 * i) == near_points_.first(2 * i + 2)) return;
+        asked.push_back({i, false, {near_points_.of(2 * i), near_points_.of(2 * i + 1)}});
+    });
     speculative_.run(update, local_, asked_);
 }
 
@@ -156,12 +158,11 @@ void Pipeline::list_asked(const Update& update) {
     asked_.clear();
     if (!update.asks_near()) return;
     const bool edges = update.settings.features == Features::edges;
-    for (std::uint32_t i = 0; i < update.pairs.size(); ++i) {
-        if (rests(update, i)) continue;
+    list(update, [&](std::uint32_t i, std::vector<AskedPair>& list) {
         const bool in_contact = local_.first(2 * i) != local_.first(2 * i + 2);
         const bool comes_near = !speculative_.of(i).empty();
         const bool apart = edges && !casts_edges_ && certified_.is_apart(i) && !in_contact;
-        if (!comes_near && (!edges || apart)) continue;
+        if (!comes_near && (!edges || apart)) return;
         const auto [first, second] = update.pairs[i];
         const PlacedBody &a = update.bodies[first], &b = update.bodies[second];
         AskedPair asked{i, false, {}};
@@ -171,8 +172,27 @@ void Pipeline::list_asked(const Update& update) {
             // Without edges a pair has nothing more to tell, but that one body is inside the other.
             asked.edges = !in_contact || !asked.near[0].empty() || !asked.near[1].empty();
         }
-        if (asked.edges || comes_near) asked_.push_back(asked);
-    }
+        if (asked.edges || comes_near) list.push_back(asked);
+    });
+}
+
+// What ask(i, list) adds for the pairs that do not rest, in their order, on all threads.
+template <class Ask>
+void Pipeline::list(const Update& update, Ask&& ask) {
+    constexpr std::size_t at_once = 1024;
+    const std::size_t pairs = update.pairs.size(), slices = (pairs + at_once - 1) / at_once;
+    if (asked_slices_.size() < slices) asked_slices_.resize(slices);
+    const auto find = [&](std::uint32_t s, std::vector<AskedPair>& found) {
+        for (std::size_t i = s * at_once; i < std::min(pairs, (s + 1) * at_once); ++i)
+            if (!rests(update, i)) ask(static_cast<std::uint32_t>(i), found);
+    };
+    if (slices == 1) return find(0, asked_);
+    update.executor.each(slices, 1, [&](std::uint32_t s) {
+        asked_slices_[s].clear();
+        find(s, asked_slices_[s]);
+    });
+    for (const auto& found : std::span(asked_slices_).first(slices))
+        asked_.insert(asked_.end(), found.begin(), found.end());
 }
 
 std::vector<std::byte> Pipeline::export_state(const Update& last, std::span<const SlotPair> pairs) {

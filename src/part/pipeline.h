@@ -54,6 +54,8 @@ private:
     void find_speculative(const Update& update);
     const DevicePairs& pairs_of(const Update& update) const;
     void list_asked(const Update& update);
+    template <class Ask>
+    void list(const Update& update, Ask&& ask);
 
     StandardRays standard_;
     CertifiedRays certified_;
@@ -69,6 +71,7 @@ private:
     bool casts_edges_ = false, casts_points_ = false;
     SpeculativeVertices speculative_;
     std::vector<AskedPair> asked_;
+    std::vector<std::vector<AskedPair>> asked_slices_; ///< of slices of the pairs
 };
 
 /// Whether the method lets pairs rest (Update::may_rest) on this device.

@@ -231,7 +231,7 @@ void CertifiedRays::cast(const Update& update, RayBatch& batch) {
     batch.resize(update.device, 0);
     // What the few that are left know is worth less than the memory: they are tested anew.
     if (is_mostly_empty(table_.slots(), update.pairs.size())) clear();
-    table_.match(update.pairs, [this](CertifiedPair& state) {
+    table_.match(update.executor, update.pairs, [this](CertifiedPair& state) {
         close(state);
         edges_.release(state);
         points_.release(state);

@@ -279,7 +279,7 @@ void CoherentRays::cast(const Update& update, RayBatch& batch) {
     sums_ = {};
     ++step_;
     open_pairs_ = update.pairs.size();
-    table_.match(update.pairs, [](PairState&) {});
+    table_.match(update.executor, update.pairs, [](PairState&) {});
     choose_turns(update);
     batch.resize(update.device, 0);
     find_rays(update, batch);

@@ -47,7 +47,7 @@ TEST(Changes, AreTheDifferencesOfTwoSteps) {
                       !known.contains({c.body_a.slot, c.body_b.slot, c.feature.source, c.feature.source_index()}));
             came += c.is_new && !c.is_speculative();
         }
-        EXPECT_EQ(changes.new_count(), came);
+        EXPECT_EQ(changes.sums().fresh, came);
         std::vector<Key> lost, expected;
         for (const LostContact& c : changes.lost())
             lost.emplace_back(c.body_a.slot, c.body_b.slot, c.feature.source, c.feature.source_index());

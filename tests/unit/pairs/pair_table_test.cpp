@@ -25,24 +25,29 @@ struct State {
     int untouched = 7;
 };
 
-TEST(PairTable, KeepsThePairsThatStayAndTellsOfThoseThatGo) {
+// Pairs of so many bodies, of which some stay from step to step.
+void keep_pairs(BodySlot bodies, std::uint32_t most, int steps) {
     Random random(1);
+    Executor executor(2);
     PairTable<State, Hot> table;
     std::map<SlotPair, double> model; // a mark for each open pair
     double mark = 0;
     std::uint64_t most_bytes = 0;
-    for (int step = 0; step < 400; ++step) {
+    for (int step = 0; step < steps; ++step) {
         std::set<SlotPair> wanted;
-        const std::uint32_t count = step % 50 == 49 ? 0 : random.below(60);
+        const std::uint32_t count = step % 50 == steps % 50 ? 0 : random.below(most);
+        if (step % 3 == 0)
+            for (const auto& [pair, its_mark] : model)
+                if (random.below(50) > 0) wanted.insert(pair);
         for (std::uint32_t i = 0; i < count; ++i) {
-            const BodySlot a = random.below(12);
+            const BodySlot a = random.below(bodies);
             wanted.insert({a, a + 1 + random.below(6)});
         }
         const std::vector<SlotPair> pairs(wanted.begin(), wanted.end());
         std::multiset<double> closed, expected;
         for (const auto& [pair, its_mark] : model)
             if (!wanted.contains(pair)) expected.insert(its_mark);
-        table.match(pairs, [&](State& state) { closed.insert(state.mark); });
+        table.match(executor, pairs, [&](State& state) { closed.insert(state.mark); });
         ASSERT_EQ(closed, expected);
         std::map<SlotPair, double> next;
         for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -71,16 +76,22 @@ TEST(PairTable, KeepsThePairsThatStayAndTellsOfThoseThatGo) {
     EXPECT_EQ(table.bytes(), 0u);
     bool closed = false;
     const std::vector<SlotPair> one{{0, 1}};
-    table.match(one, [&](State&) { closed = true; });
+    table.match(executor, one, [&](State&) { closed = true; });
     EXPECT_FALSE(closed) << "what was cleared is not open any more";
     EXPECT_EQ(table.state(0).mark, 0.0);
 }
 
+TEST(PairTable, KeepsThePairsThatStayAndTellsOfThoseThatGo) {
+    keep_pairs(12, 60, 400);
+    keep_pairs(20'000, 12'000, 8); // many slices
+}
+
 TEST(PairTable, AsksOfThePairsThatWantItInTheirOrder) {
+    Executor executor(1);
     PairTable<State, Hot> table;
     std::vector<SlotPair> pairs;
     for (BodySlot i = 0; i < 500; ++i) pairs.emplace_back(i, i + 1);
-    table.match(pairs, [](State&) {});
+    table.match(executor, pairs, [](State&) {});
     Random random(3);
     std::vector<bool> wanted(pairs.size());
     for (auto&& one : wanted) one = random.below(3) == 0;
@@ -155,17 +166,18 @@ TEST(RangePool, GivesNothingForNothingAndRefusesTooMuch) {
 
 // Once few of many are left, slots are given anew, and what is kept stays with its pair.
 TEST(PairTable, KeepsWhatIsLeftOfMany) {
+    Executor executor(2);
     PairTable<State, Hot> table;
     std::vector<SlotPair> many, few;
     for (BodySlot i = 0; i < 5000; ++i) many.emplace_back(i, i + 1);
     for (BodySlot i = 100; i < 5000; i += 50) few.emplace_back(i, i + 1);
     const auto ignore = [](State&) {};
-    table.match(many, ignore);
+    table.match(executor, many, ignore);
     for (std::size_t i = 0; i < many.size(); ++i) table.state(i).mark = table.hot(i).left = double(many[i].first);
     EXPECT_EQ(table.slots(), many.size());
-    table.match(few, ignore);
+    table.match(executor, few, ignore);
     EXPECT_EQ(table.slots(), few.size());
-    table.match(many, ignore);
+    table.match(executor, many, ignore);
     for (std::size_t i = 0; i < many.size(); ++i) {
         const bool stayed = i >= 100 && i % 50 == 0;
         ASSERT_EQ(table.state(i).mark, stayed ? double(i) : 0.0);
