@@ -19,6 +19,7 @@ void add_stacks(CLI::App& app);
 void add_holds(CLI::App& app);
 void add_clash(CLI::App& app);
 void add_scale(CLI::App& app);
+void add_threads(CLI::App& app);
 void add_new_shape(CLI::App& app);
 void add_sleeping(CLI::App& app);
 void add_floor(CLI::App& app);
