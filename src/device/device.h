@@ -59,15 +59,15 @@ struct Piece {
 };
 
 /// What a scan works on, a table: values[c * stride + i] is item i of column c. The scan sets firsts[i] to the sum of
-/// column 0 before item i, and totals[at] to the sums of all columns. `room`: most results that the caller can store
-/// (see kernels::Totals).
+/// column 0 before item i, behind `before` results that are none of its items', and totals[at] to the sums of all
+/// columns. `room`: most results that the caller can store, with those before (see kernels::Totals).
 struct ScanOf {
     Count count;
     kernels::uint columns = 1, stride = 0;
     const Buffer* values = nullptr;
     Buffer* firsts = nullptr;
     Buffer* totals = nullptr;
-    kernels::uint at = 0, room = 0;
+    kernels::uint at = 0, room = 0, before = 0;
 };
 
 /// Runs work in order. Every call but read() and finish() may return before the work is done.

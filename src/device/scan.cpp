@@ -27,9 +27,9 @@ void Columns::resize(Device& device, kernels::uint columns, std::size_t items) {
 }
 
 void Columns::scan(Device& device, const Count& count, const Array<kernels::Totals>& totals, std::size_t at,
-                   std::size_t room) const {
+                   std::size_t room, std::size_t before) const {
     device.queue().scan({count, columns_, stride_, values_.buffer(), firsts_.buffer(), totals.buffer(),
-                         static_cast<kernels::uint>(at), Count(room).value});
+                         static_cast<kernels::uint>(at), Count(room).value, Count(before).value});
 }
 
 Count items_of(const Array<kernels::Totals>& totals, std::size_t at, std::size_t most) {

@@ -16,9 +16,10 @@ public:
     const Array<kernels::uint>& values() const { return values_; }
     const Array<kernels::uint>& firsts() const { return firsts_; }
 
-    /// Leaves the sums in totals[at]. room: the most results that the caller can store.
+    /// Leaves the sums in totals[at]. room: the most results that the caller can store, with those `before`, which are
+    /// others.
     void scan(Device& device, const Count& count, const Array<kernels::Totals>& totals, std::size_t at,
-              std::size_t room) const;
+              std::size_t room, std::size_t before = 0) const;
 
 private:
     Array<kernels::uint> values_, firsts_;

@@ -5,6 +5,7 @@
 #include "free_all.h"
 
 #include <algorithm>
+#include <array>
 
 namespace raycontact {
 
@@ -37,6 +38,8 @@ void Pipeline::forget() {
     certified_.clear();
     coherent_.clear();
     pairs_.clear();
+    batch_.sums = {};
+    batch_.totals = {};
 }
 
 void Pipeline::trim() {
@@ -61,10 +64,12 @@ void Pipeline::gather(const Update& update) {
 
 // Waits for all launches, then reads the sums, the contacts and the near edges. False if the contacts had too little
 // room: there is enough now, and they must be written again.
-bool Pipeline::read(Device& device) {
-    const Piece pieces[] = {batch_.totals.piece(batch_.sums), found_.piece(),
-                            casts_edges_ ? edges_.found().piece() : Piece{},
-                            casts_points_ ? points_.found().piece() : Piece{}};
+bool Pipeline::read(const Update& update) {
+    Device& device = update.device;
+    std::array<Piece, 7> pieces{batch_.totals.piece(batch_.sums), found_.piece(),
+                                casts_edges_ ? edges_.found().piece() : Piece{},
+                                casts_points_ ? points_.found().piece() : Piece{}};
+    if (finds(update) == Finds::coherent) std::ranges::copy(coherent_.results(), pieces.begin() + 4);
     device.queue().read(pieces);
     check_sums(batch_.sums);
     return found_.take(device, batch_.sums[RayBatch::contact_sum].sums[0]);
@@ -79,7 +84,7 @@ void Pipeline::begin(const Update& update) {
         certified_.cast(update, batch_);
         break;
     case Finds::coherent:
-        coherent_.cast(update, batch_);
+        coherent_.begin(update, batch_);
         break;
     }
     gather(update);
@@ -117,19 +122,38 @@ const DevicePairs& Pipeline::pairs_of(const Update& update) const {
     return finds(update) == Finds::standard ? standard_.pairs() : pairs_;
 }
 
+bool Pipeline::all_rays_had_room(const Update& update) {
+    switch (finds(update)) {
+    case Finds::standard:
+        return standard_.had_room(update.device, batch_);
+    case Finds::certified: // makes as much room as it needs
+        return true;
+    case Finds::coherent:
+        return coherent_.had_room(update.device, batch_);
+    }
+    return true;
+}
+
+void Pipeline::cast_again(const Update& update) {
+    if (finds(update) == Finds::standard)
+        standard_.cast(update, batch_);
+    else
+        coherent_.cast(update, batch_);
+}
+
 void Pipeline::end(const Update& update) {
     for (;;) {
-        const bool all_written = read(update.device);
-        const bool all_cast = finds(update) != Finds::standard || standard_.had_room(update.device, batch_);
+        const bool all_written = read(update);
+        const bool all_cast = all_rays_had_room(update);
         const bool all_edges = !casts_edges_ || edges_.had_room(update.device, batch_);
         const bool all_points = !casts_points_ || points_.had_room(update.device, batch_);
         if (all_written && all_cast && all_edges && all_points) break;
-        if (!all_cast) standard_.cast(update, batch_);
+        if (!all_cast) cast_again(update);
         gather(update);
         if (!all_edges) cast_near(update, edges_);
         if (!all_points) cast_near(update, points_);
     }
-    if (finds(update) == Finds::coherent) coherent_.keep(update);
+    if (finds(update) == Finds::coherent) coherent_.keep(batch_);
     local_.set(update.executor, found_.values(), batch_.directed, update.pairs.size());
     find_speculative(update);
     if (casts_edges_)

@@ -48,7 +48,9 @@ public:
 
 private:
     void gather(const Update& update);
-    bool read(Device& device);
+    bool read(const Update& update);
+    bool all_rays_had_room(const Update& update);
+    void cast_again(const Update& update);
     void set_margins(const Update& update);
     void cast_near(const Update& update, NearRays& rays);
     void find_speculative(const Update& update);

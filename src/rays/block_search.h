@@ -4,6 +4,8 @@
 #include "device/scan.h"
 #include "pairs/update.h"
 
+#include <array>
+
 namespace raycontact {
 
 /// Finds the vertex blocks of pairs that may be in contact, and then the vertices of these blocks that cast a ray; or
@@ -51,14 +53,15 @@ public:
         pair_count_ = 0;
         found_ = Count(0);
     }
-    /// Of the last find.
-    std::uint64_t bytes() const {
-        return std::uint64_t{found_.most} * (sizeof(kernels::PairBlock) + 3 * sizeof(kernels::uint))
-               + pair_count_ * (2 * sizeof(kernels::uint) + MASK_WORDS * sizeof(kernels::ulong) + sizeof(float));
+    static std::uint64_t bytes(std::uint64_t blocks, std::uint64_t pairs) {
+        return blocks * (sizeof(kernels::PairBlock) + 3 * sizeof(kernels::uint))
+               + pairs * (2 * sizeof(kernels::uint) + MASK_WORDS * sizeof(kernels::ulong) + sizeof(float));
     }
+    /// Of the last find.
+    std::uint64_t bytes() const { return bytes(found_.most, pair_count_); }
 
-    /// Of the last find_now(), how many; of find(): the room.
-    std::size_t found() const { return found_.most; }
+    /// Blocks of the last find; of find(), as the device has counted them.
+    const Count& found() const { return found_; }
     /// As many as find_now() found; of find(): the room.
     const Array<kernels::PairBlock>& blocks() const { return blocks_; }
     /// By pair: where its blocks begin.
@@ -68,6 +71,13 @@ public:
     /// Of find_now() with horizons, by pair, if it has no block: how far its vertices can move before one could be in
     /// contact, metres, rounding not included. May be less, also negative.
     std::span<const float> host_safe_distances() const { return host_safe_distances_; }
+
+    /// Arguments of a read: of find(), what host_counts() and host_safe_distances() say after a find_now().
+    std::array<Piece, 2> results() {
+        host_counts_.resize(pair_count_);
+        host_safe_distances_.resize(safe_distances_.size());
+        return {counts_.values().piece(host_counts_), safe_distances_.piece(host_safe_distances_)};
+    }
 
     /// By block: a column of vertices that cast, one of those inside the bounds; 0 until they are counted.
     Columns& ray_counts() { return ray_counts_; }

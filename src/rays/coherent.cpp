@@ -166,55 +166,39 @@ void CoherentRays::skip_apart() {
     }
 }
 
-// Full tests first: the vertices in the bounds that could be in contact, or soon. Then the rays that are followed.
-void CoherentRays::find_rays(const Update& update, RayBatch& batch) {
-    const ShapeStore::Arrays& arrays = update.arrays();
-    Device& device = update.device;
-    device_pairs_.write(device, host_pairs_);
-    device_cullings_.write(device, cullings_);
-    device_wide_.write(device, wide_pairs_);
-    device_reaches_.write(device, reaches_);
-    device_margins_.write(device, margins_);
-    const bool skip_outside = update.settings.paper.skip_outside;
-    const Array<float> no_horizons;
-    near_.find_now(update, device_wide_, full_count_, skip_outside ? device_reaches_ : no_horizons, batch.totals,
-                   RayBatch::block_sum);
-    if (skip_outside) skip_apart();
-    const Array<kernels::PairBlock>& blocks = near_.blocks();
-    sums_.vertices = VERTEX_LANES * blocks.size();
-    full_rays_ = 0;
-    if (blocks.size() > 0) {
-        launch<KernelId::count_near_rays>(device, blocks.size(), near_.ray_counts().stride(), device_wide_,
-                                          device_reaches_, device_margins_, arrays.headers, arrays.memory, blocks,
-                                          near_.ray_counts().values());
-        near_.ray_counts().scan(device, blocks.size(), batch.totals, RayBatch::ray_sum, NONE - 1);
-        kernels::Totals sum;
-        const Piece piece = batch.totals.piece({&sum, 1}, RayBatch::ray_sum);
-        device.queue().read({&piece, 1});
-        check_sums({&sum, 1});
-        full_rays_ = sum.sums[0];
-        sums_.rays = sum.sums[1];
-    }
-
+void CoherentRays::list_segments() {
     host_segments_.clear();
     host_firsts_.clear();
-    std::uint64_t end = full_rays_;
+    followed_count_ = 0;
     for (std::size_t i = full_count_; i < directed_.size(); ++i) {
         const Kept& own = kept(directed_[i]);
         host_segments_.push_back({static_cast<kernels::uint>(i), own.first, own.count, 0, 0});
-        host_firsts_.push_back(static_cast<kernels::uint>(end));
-        end += own.count;
+        host_firsts_.push_back(static_cast<kernels::uint>(followed_count_));
+        followed_count_ += own.count;
     }
-    sums_.rays += end - full_rays_;
-    batch.count = Count(end);
-    batch.resize(device, end);
-    starts_.resize(device, end);
-    launch<KernelId::write_near_rays>(device, full_rays_ > 0 ? blocks.size() : 0, blocks, near_.ray_counts().firsts(),
-                                      batch.rays, starts_);
-    segments_.write(device, host_segments_);
-    segment_firsts_.write(device, host_firsts_);
-    launch<KernelId::copy_cached_rays>(device, host_segments_.size(), segments_, segment_firsts_, cached_, batch.rays,
-                                       starts_);
+}
+
+// The rays that are followed come first, as only the device knows how many full tests find: vertices in the bounds that
+// could be in contact, or soon.
+void CoherentRays::find_rays(const Update& update, RayBatch& batch) {
+    const ShapeStore::Arrays& arrays = update.arrays();
+    Device& device = update.device;
+    batch.count = Count(followed_count_);
+    if (full_count_ > 0) {
+        const Array<float> none;
+        near_.find(update, device_wide_, skips_outside_ ? device_reaches_ : none, none, batch.totals,
+                   RayBatch::block_sum);
+        launch<KernelId::count_near_rays>(device, near_.found(), near_.ray_counts().stride(), device_wide_,
+                                          device_reaches_, device_margins_, arrays.headers, arrays.memory,
+                                          near_.blocks(), near_.ray_counts().values());
+        near_.ray_counts().scan(device, near_.found(), batch.totals, RayBatch::ray_sum, batch.rays.size(),
+                                followed_count_);
+        launch<KernelId::write_near_rays>(device, items_of(batch.totals, RayBatch::ray_sum, near_.found().most),
+                                          near_.blocks(), near_.ray_counts().firsts(), batch.rays, starts_);
+        batch.count = results_of(batch.totals, RayBatch::ray_sum, batch.rays.size());
+    }
+    launch<KernelId::copy_cached_rays>(device, host_segments_.size(), segments_, segment_firsts_, last_cached_,
+                                       batch.rays, starts_);
 }
 
 void CoherentRays::follow(const Update& update, RayBatch& batch) {
@@ -245,15 +229,34 @@ void CoherentRays::list_cached_rays(const Update& update, RayBatch& batch) {
     cached_.resize(device, batch.rays.size());
     launch<KernelId::count_cached_rays>(device, directed_.size(), ranges_, batch.hits, nexts_, hows_, followed_,
                                         kept_counts_.values());
-    if (batch.rays.size() == 0) return;
     kept_counts_.scan(device, directed_.size(), batch.totals, RayBatch::method_sum, cached_.size());
     launch<KernelId::write_cached_rays>(device, directed_.size(), ranges_, batch.rays, nexts_, kept_counts_.firsts(),
                                         cached_);
 }
 
-void CoherentRays::keep(const Update& update) {
+std::array<Piece, 3> CoherentRays::results() {
     host_followed_.resize(directed_.size());
-    followed_.read(update.device, host_followed_);
+    std::array<Piece, 3> pieces{followed_.piece(host_followed_)};
+    if (full_count_ > 0) std::ranges::copy(near_.results(), pieces.begin() + 1);
+    return pieces;
+}
+
+bool CoherentRays::had_room(Device& device, RayBatch& batch) {
+    if (full_count_ == 0) return true;
+    const std::size_t rays = followed_count_ + batch.sums[RayBatch::ray_sum].sums[0], room = batch.rays.size();
+    const bool blocks_had = near_.had_room(device, batch.sums[RayBatch::block_sum]);
+    if (rays > room) batch.resize(device, rays + rays / 2);
+    return blocks_had && rays <= room;
+}
+
+void CoherentRays::keep(const RayBatch& batch) {
+    if (full_count_ > 0) {
+        if (skips_outside_) skip_apart();
+        sums_.vertices = VERTEX_LANES * std::uint64_t{batch.sums[RayBatch::block_sum].sums[0]};
+        full_rays_ = batch.sums[RayBatch::ray_sum].sums[0];
+        sums_.rays = batch.sums[RayBatch::ray_sum].sums[1];
+    }
+    sums_.rays += followed_count_;
     kernels::uint first = 0;
     std::uint64_t cast = 0;
     for (std::size_t i = 0; i < directed_.size(); ++i) {
@@ -275,16 +278,34 @@ void CoherentRays::keep(const Update& update) {
     cached_count_ = first;
 }
 
-void CoherentRays::cast(const Update& update, RayBatch& batch) {
+void CoherentRays::begin(const Update& update, RayBatch& batch) {
+    constexpr std::size_t least_room = 4096; // rays
+    Device& device = update.device;
     sums_ = {};
+    full_rays_ = 0;
     ++step_;
     open_pairs_ = update.pairs.size();
     table_.match(update.executor, update.pairs, [](PairState&) {});
+    skips_outside_ = update.settings.paper.skip_outside;
     choose_turns(update);
-    batch.resize(update.device, 0);
-    find_rays(update, batch);
+    list_segments();
+    device_pairs_.write(device, host_pairs_);
+    device_cullings_.write(device, cullings_);
+    device_wide_.write(device, wide_pairs_);
+    device_reaches_.write(device, reaches_);
+    device_margins_.write(device, margins_);
+    segments_.write(device, host_segments_);
+    segment_firsts_.write(device, host_firsts_);
+    std::swap(cached_, last_cached_);
+    batch.resize(device, std::max<std::size_t>({batch.rays.size(), least_room, followed_count_ + followed_count_ / 2}));
     batch.pairs = &device_pairs_;
     batch.directed = directed_;
+    cast(update, batch);
+}
+
+void CoherentRays::cast(const Update& update, RayBatch& batch) {
+    starts_.resize(update.device, batch.rays.size());
+    find_rays(update, batch);
     follow(update, batch);
     list_cached_rays(update, batch);
 }
@@ -360,14 +381,14 @@ void CoherentRays::count(StepStats& stats) const {
                         + (2 * directed_.size() + 2 * full_count_) * sizeof(kernels::DirectedPair)
                         + directed_.size() * (2 * sizeof(float) + 2 * sizeof(kernels::Followed))
                         + (sums_.walks + full_rays_) * (RayBatch::bytes_of_ray + 3 * sizeof(kernels::uint))
-                        + near_.bytes();
+                        + BlockSearch::bytes(sums_.vertices / VERTEX_LANES, full_count_);
 }
 
 void CoherentRays::trim() {
     free_all(turns_, directed_, host_pairs_, wide_pairs_, cullings_, reaches_, margins_, host_segments_, host_firsts_,
              host_ranges_, host_followed_, device_pairs_, device_wide_, device_cullings_, device_reaches_,
              device_margins_, kept_counts_, segment_firsts_, ranges_, starts_, nexts_, hows_, near_, segments_,
-             followed_);
+             followed_, last_cached_);
 }
 
 } // namespace raycontact

@@ -8,6 +8,7 @@
 
 #include <raycontact/scene.h>
 
+#include <array>
 #include <cstddef>
 
 namespace raycontact {
@@ -22,12 +23,19 @@ struct KeptRay {
 
 /// The iterative method (LGA13; paper section 3) and, with predictions, the predictive one (paper section 3.1). A pair
 /// that moved less than a threshold since its last full test follows the rays it kept; others get a full test. If the
-/// library chooses the threshold of `predictive`, pairs too fast to be followed are cast in full.
+/// library chooses the threshold of `predictive`, pairs too fast to be followed are cast in full. The host decides by
+/// pairs, and reads what became of their rays at the end of the step.
 class CoherentRays {
 public:
+    void begin(const Update& update, RayBatch& batch);
+    /// Arguments of the read at the end of the step.
+    std::array<Piece, 3> results();
+    /// After it: false if blocks or rays had too little room: there is enough now, and cast() must run again.
+    bool had_room(Device& device, RayBatch& batch);
+    /// Casts and follows the rays again.
     void cast(const Update& update, RayBatch& batch);
-    /// After the batch has been read: stores what each pair follows in the next step.
-    void keep(const Update& update);
+    /// Then: stores what each pair follows in the next step.
+    void keep(const RayBatch& batch);
     void clear() { table_.clear(); }
 
     /// The state kept for some pairs of the last step, for another part to go on with. Between two steps.
@@ -48,6 +56,7 @@ private:
     enum class Turn : std::uint8_t { follow, test };
     void choose_turn(const Update& update, std::uint32_t i);
     void choose_turns(const Update& update);
+    void list_segments();
     void find_rays(const Update& update, RayBatch& batch);
     void skip_apart();
     void follow(const Update& update, RayBatch& batch);
@@ -81,12 +90,14 @@ private:
     std::vector<Turn> turns_;             ///< per pair
     std::vector<std::uint32_t> directed_; ///< directed indices of the batch: full tests, then what is followed
     std::size_t full_count_ = 0;          ///< of directed_
+    bool skips_outside_ = false;          ///< in the step
     std::vector<kernels::DirectedPair> host_pairs_, wide_pairs_;
     std::vector<float> cullings_, reaches_, margins_; ///< of directed_, of the full ones, of the full ones
     std::vector<kernels::Segment> host_segments_;
     std::vector<kernels::uint> host_firsts_, host_ranges_;
     std::vector<kernels::Followed> host_followed_;
     StepDetails sums_;
+    std::uint64_t followed_count_ = 0; ///< rays
     std::uint64_t full_rays_ = 0, cached_count_ = 0, open_pairs_ = 0;
     std::uint64_t step_ = 0;
 
@@ -96,7 +107,7 @@ private:
     Array<kernels::uint> segment_firsts_, ranges_, starts_, nexts_, hows_;
     BlockSearch near_;
     Array<kernels::Segment> segments_;
-    Array<kernels::CachedRay> cached_;
+    Array<kernels::CachedRay> cached_, last_cached_; ///< last_cached_: of the step before
     Array<kernels::Followed> followed_;
 };
 

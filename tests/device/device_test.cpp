@@ -204,7 +204,7 @@ struct Scanned {
 
 // The count is given, or lies where an earlier scan left it.
 Scanned scan(Device& device, const std::vector<kernels::uint>& values, std::size_t columns, std::size_t count,
-             std::size_t room, bool counted) {
+             std::size_t room, bool counted, kernels::uint others = 0) {
     Columns table;
     const std::size_t stride = values.size() / columns;
     table.resize(device, static_cast<kernels::uint>(columns), stride);
@@ -218,7 +218,7 @@ Scanned scan(Device& device, const std::vector<kernels::uint>& values, std::size
     Scanned scanned;
     scanned.launches =
         device.queue().scan({given, static_cast<kernels::uint>(columns), table.stride(), table.values().buffer(),
-                             table.firsts().buffer(), totals.buffer(), 1, static_cast<kernels::uint>(room)});
+                             table.firsts().buffer(), totals.buffer(), 1, static_cast<kernels::uint>(room), others});
     totals.read(device, scanned.totals);
     scanned.firsts.resize(count);
     table.firsts().read(device, scanned.firsts);
@@ -236,8 +236,12 @@ TEST(scan, is_the_hosts) {
                 for (auto& value : values) value = static_cast<kernels::uint>(random() % 5);
                 const std::size_t count = counted ? size - size / 3 : size;
                 for (const std::size_t room : {std::size_t{0}, size, 10 * size}) {
-                    const Scanned expected = scan(*host.device, values, columns, count, room, counted);
-                    const Scanned found = scan(*opened.device, values, columns, count, room, counted);
+                    const kernels::uint others = room == size ? 7 : 0;
+                    const Scanned expected = scan(*host.device, values, columns, count, room, counted, others);
+                    const Scanned found = scan(*opened.device, values, columns, count, room, counted, others);
+                    if (count > 0) {
+                        ASSERT_EQ(expected.firsts.front(), others);
+                    }
                     ASSERT_EQ(found.firsts, expected.firsts) << size;
                     ASSERT_EQ(std::memcmp(found.totals, expected.totals, sizeof found.totals), 0) << size;
                     ASSERT_EQ(found.launches, expected.launches) << size;

@@ -23,12 +23,12 @@ struct Ceiling {
 
 constexpr Ceiling ceilings[] = {{Method::standard, 11, 1},
                                 {Method::certified, 16, 4},
-                                {Method::iterative, 14, 4},
-                                {Method::predictive, 14, 4},
+                                {Method::iterative, 14, 1},
+                                {Method::predictive, 14, 1},
                                 // Edges are read with the contacts of vertices.
                                 {Method::standard, 21, 1, Features::edges},
-                                {Method::iterative, 26, 4, Features::edges},
-                                {Method::predictive, 26, 4, Features::edges},
+                                {Method::iterative, 26, 1, Features::edges},
+                                {Method::predictive, 26, 1, Features::edges},
                                 {Method::certified, 26, 5, Features::edges}};
 
 std::uint64_t median(std::vector<std::uint64_t> values) {

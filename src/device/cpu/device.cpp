@@ -48,14 +48,15 @@ kernels::uint number_of(const Count& count) {
 void scan_here(const ScanOf& scan) {
     const kernels::uint count = number_of(scan.count);
     const kernels::uint* values = words_of(scan.values);
-    std::exclusive_scan(values, values + count, words_of(scan.firsts), kernels::uint{0});
+    std::exclusive_scan(values, values + count, words_of(scan.firsts), scan.before);
     std::array<std::uint64_t, MOST_COLUMNS> sums{};
     for (std::size_t c = 0; c < scan.columns; ++c, values += scan.stride)
         sums[c] = std::accumulate(values, values + count, std::uint64_t{0});
     kernels::Totals& totals = reinterpret_cast<kernels::Totals*>(words_of(scan.totals))[scan.at];
-    const bool fits = sums[0] <= scan.room;
+    const std::uint64_t results = scan.before + sums[0];
+    const bool fits = results <= scan.room;
     totals.items = fits && sums[0] > 0 ? count : 0;
-    totals.results = fits ? static_cast<kernels::uint>(sums[0]) : 0;
+    totals.results = fits ? static_cast<kernels::uint>(results) : 0;
     for (std::size_t c = 0; c < MOST_COLUMNS; ++c)
         totals.sums[c] = static_cast<kernels::uint>(std::min<std::uint64_t>(sums[c], NONE));
 }

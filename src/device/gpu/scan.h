@@ -75,10 +75,11 @@ DEVICE uint saturated(ulong sum) {
     return sum < NONE ? (uint)sum : NONE;
 }
 
-DEVICE void set_totals(GLOBAL Totals* RESTRICT totals, uint column, ulong sum, uint count, uint room) {
+DEVICE void set_totals(GLOBAL Totals* RESTRICT totals, uint column, ulong sum, uint count, uint room, uint before) {
     if (column == 0u) {
-        totals->items = sum > 0u && sum <= room ? count : 0u;
-        totals->results = sum <= room ? (uint)sum : 0u;
+        const ulong results = before + sum;
+        totals->items = sum > 0u && results <= room ? count : 0u;
+        totals->results = results <= room ? (uint)results : 0u;
         for (uint c = 1u; c < MOST_COLUMNS; ++c) totals->sums[c] = 0u;
     }
     totals->sums[column] = saturated(sum);
@@ -86,15 +87,16 @@ DEVICE void set_totals(GLOBAL Totals* RESTRICT totals, uint column, ulong sum, u
 
 // One group, for up to SCAN_AT_ONCE items.
 GROUP_KERNEL void scan_at_once(COUNT(count), uint columns, uint stride, GLOBAL const uint* RESTRICT values,
-                               GLOBAL uint* RESTRICT firsts, GLOBAL Totals* RESTRICT totals, uint at, uint room) {
+                               GLOBAL uint* RESTRICT firsts, GLOBAL Totals* RESTRICT totals, uint at, uint room,
+                               uint before) {
     SHARED(ulong, shared, SCAN_GROUP);
     SHARED(uint, tile, TILE_PLACES);
     const uint n = ALL(count);
     const Slice all = slice_of(n, 0u, 1u);
     for (uint c = 0u; c < columns; ++c) {
-        const ulong sum = c == 0u ? write_firsts(values, all, 0u, shared, tile, firsts)
+        const ulong sum = c == 0u ? write_firsts(values, all, before, shared, tile, firsts)
                                   : sum_of(values + (ulong)c * stride, all, shared);
-        if (THREAD == 0u) set_totals(totals + at, c, sum, n, room);
+        if (THREAD == 0u) set_totals(totals + at, c, sum, n, room, before);
     }
 }
 
@@ -109,16 +111,16 @@ GROUP_KERNEL void scan_blocks(COUNT(count), uint columns, uint stride, GLOBAL co
     }
 }
 
-// One group, a thread a block: the sum of each block in column 0 becomes the sum of the blocks before it.
+// One group, a thread a block: the sum of each block in column 0 becomes that of `before` and the blocks before it.
 GROUP_KERNEL void scan_sums(COUNT(count), uint columns, uint blocks, GLOBAL ulong* RESTRICT sums,
-                            GLOBAL Totals* RESTRICT totals, uint at, uint room) {
+                            GLOBAL Totals* RESTRICT totals, uint at, uint room, uint before) {
     SHARED(ulong, shared, SCAN_GROUP);
     for (uint c = 0u; c < columns; ++c) {
         ulong total;
         const ulong own = THREAD < blocks ? sums[c * SCAN_GROUP + THREAD] : 0u;
-        const ulong before = sum_before(own, shared, &total);
-        if (c == 0u && THREAD < blocks) sums[THREAD] = before;
-        if (THREAD == 0u) set_totals(totals + at, c, total, ALL(count), room);
+        const ulong sum = sum_before(own, shared, &total);
+        if (c == 0u && THREAD < blocks) sums[THREAD] = before + sum;
+        if (THREAD == 0u) set_totals(totals + at, c, total, ALL(count), room, before);
     }
 }
 

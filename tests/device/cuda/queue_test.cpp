@@ -180,7 +180,7 @@ TEST_F(Queued, scans_take_one_kernel_or_three) {
     const auto scan = [&](std::size_t items) {
         forget();
         return queue_.scan(
-            {items, 2, table.stride(), table.values().buffer(), table.firsts().buffer(), totals.buffer(), 1, 77});
+            {items, 2, table.stride(), table.values().buffer(), table.firsts().buffer(), totals.buffer(), 1, 77, 5});
     };
     const auto expect = [&](std::size_t i, const char* kernel, unsigned groups, std::size_t parameters) {
         EXPECT_EQ(launched(i).kernel, kernel);
@@ -190,16 +190,17 @@ TEST_F(Queued, scans_take_one_kernel_or_three) {
     };
     EXPECT_EQ(scan(SCAN_AT_ONCE), 1u);
     ASSERT_EQ(cuda.launches.size(), 1u);
-    expect(0, "scan_at_once", 1, 9);
+    expect(0, "scan_at_once", 1, 10);
     EXPECT_EQ(launched(0).arguments[2], 2u);
     EXPECT_EQ(launched(0).arguments[3], 300000u);
     EXPECT_EQ(launched(0).arguments[7], 1u);
     EXPECT_EQ(launched(0).arguments[8], 77u);
+    EXPECT_EQ(launched(0).arguments[9], 5u);
     EXPECT_EQ(scan(300000), 3u);
     ASSERT_EQ(cuda.launches.size(), 3u);
     const unsigned blocks = 37; // of 8 items for each of 1024 threads
     expect(0, "scan_blocks", blocks, 6);
-    expect(1, "scan_sums", 1, 8);
+    expect(1, "scan_sums", 1, 9);
     expect(2, "scan_firsts", blocks, 5);
     EXPECT_EQ(launched(1).arguments[3], blocks);
     EXPECT_EQ(launched(0).arguments[5], launched(1).arguments[4]) << "the sums of blocks";
