@@ -15,7 +15,7 @@ namespace raycontact {
 /// rows. Their number depends on the list alone.
 struct RowSlices {
     std::size_t size;         ///< of the list
-    std::size_t least = 4096; ///< elements of a slice, but for the last
+    std::size_t least = 1024; ///< elements of a slice, but for the last
 
     std::size_t count() const { return (size + least - 1) / least; }
 

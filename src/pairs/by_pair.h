@@ -51,7 +51,7 @@ private:
     static void each_row(Executor& executor, std::span<const T> found, Work&& work) {
         const auto size = static_cast<std::uint32_t>(found.size());
         const auto begins = [&](std::uint32_t i) { return i == 0 || i == size || found[i].pair != found[i - 1].pair; };
-        executor.run(size, 2048, [&](std::uint32_t begin, std::uint32_t end) {
+        executor.run(size, 512, [&](std::uint32_t begin, std::uint32_t end) {
             while (!begins(begin)) ++begin;
             for (std::uint32_t next = begin; begin < end; begin = next) {
                 while (!begins(++next)) {

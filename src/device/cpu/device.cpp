@@ -97,6 +97,7 @@ kernels::uint grain_of(KernelId kernel) {
     case KernelId::count_near_rays:
         return 64;
     case KernelId::place_pairs:
+    case KernelId::write_contacts:
     case KernelId::find_margins:
     case KernelId::write_edges:
     case KernelId::write_candidate_rays:
