@@ -3,6 +3,7 @@
 
 #include "body_slots.h"
 #include "broadphase/broad_phase.h"
+#include "contacts/columns.h"
 #include "contacts/predictions.h"
 #include "executor/float_environment.h"
 #include "free_all.h"
@@ -10,6 +11,7 @@
 #include "narrow_phase.h"
 #include "next_poses.h"
 #include "pose_fault.h"
+#include "pose_form.h"
 #include "shape/preparer.h"
 #include "shape/shape_data.h"
 #include "world_boxes.h"
@@ -291,7 +293,7 @@ struct Scene::State {
         world.trim();
         broad_phase.trim();
         pairs.shrink_to_fit();
-        free_all(last_pairs, given_pairs, sorted, sorter);
+        free_all(last_pairs, given_pairs, sorted, sorter, columns);
         slot_pairs.shrink_to_fit();
     }
 
@@ -328,6 +330,7 @@ struct Scene::State {
     std::vector<SlotPair> given_pairs, sorted; ///< of set_pairs()
     PairSorter sorter;
     std::shared_ptr<std::vector<Contact>> contacts = std::make_shared<std::vector<Contact>>();
+    ContactColumnWriter columns;
     StepStats stats;
     static constexpr std::uint64_t wanted = std::numeric_limits<std::uint64_t>::max();
     std::unordered_map<const Shape*, std::uint64_t> met_shapes; ///< those not prepared: the step that first met them
@@ -406,6 +409,10 @@ void Scene::set_poses(std::span<const BodyId> bodies, std::span<const Pose> pose
     }
     for (std::size_t i = 0; i < bodies.size(); ++i)
         state_->set_pose(state_->bodies[bodies[i].slot], bodies[i].slot, poses[i]);
+}
+
+void Scene::set_poses(std::span<const BodyId> bodies, const UserMemory& poses, PoseForm form, NumberType type) {
+    set_poses(bodies, read_poses(state_->narrow.parts().executor(), poses, bodies.size(), form, type));
 }
 
 const Pose& Scene::pose(BodyId body) const {
@@ -513,6 +520,10 @@ std::span<const Contact> Scene::contacts(BodyId a, BodyId b) const {
     const SlotPair wanted = std::minmax({a.slot, b.slot});
     const auto first = std::ranges::lower_bound(*state_->contacts, wanted, {}, pair_of);
     return {first, std::ranges::upper_bound(*state_->contacts, wanted, {}, pair_of)};
+}
+std::size_t Scene::write_contacts(std::span<const ContactOutput> columns) {
+    state_->columns.run(state_->narrow.parts().executor(), *state_->contacts, columns);
+    return state_->contacts->size();
 }
 std::span<const LostContact> Scene::lost_contacts() const noexcept {
     return state_->narrow.lost_contacts();

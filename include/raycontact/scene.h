@@ -3,6 +3,7 @@
 
 #include <raycontact/body_id.h>
 #include <raycontact/contact.h>
+#include <raycontact/contact_columns.h>
 #include <raycontact/error.h>
 #include <raycontact/export.h>
 #include <raycontact/prediction.h>
@@ -10,6 +11,7 @@
 #include <raycontact/settings.h>
 #include <raycontact/shape.h>
 #include <raycontact/step_stats.h>
+#include <raycontact/user_memory.h>
 
 #include <cstdint>
 #include <functional>
@@ -59,6 +61,11 @@ public:
     /// The same in bulk: poses[i] of bodies[i]. Throws InputError if there are not as many poses as bodies, and as
     /// set_pose(), naming the place in the list; then no pose changes.
     void set_poses(std::span<const BodyId> bodies, std::span<const Pose> poses);
+    /// The same from memory of a device or of the host, one pose after the other: matrices as they are, quaternions
+    /// normalised. Throws InputError also where the memory holds fewer poses than there are bodies, and
+    /// std::runtime_error where its device fails; then no pose changes.
+    void set_poses(std::span<const BodyId> bodies, const UserMemory& poses, PoseForm form,
+                   NumberType type = NumberType::float32);
     /// As it was set last.
     const Pose& pose(BodyId body) const;
     /// Where the body is expected after the next step, for the speculative contacts of that step. Without it, the body
@@ -108,6 +115,10 @@ public:
     std::span<const Contact> contacts() const noexcept;
     /// The same list for as long as it is held, by any thread: later steps write into another one.
     std::shared_ptr<const std::vector<Contact>> shared_contacts() const noexcept;
+    /// Writes columns of them to memory of a device or of the host; returns their number, when all are there. Throws
+    /// InputError, before it writes any, naming the column that has too little room, and std::runtime_error where the
+    /// memory's device fails.
+    std::size_t write_contacts(std::span<const ContactOutput> columns);
     /// Those of one pair, in either order of its bodies; none for two that were not paired.
     std::span<const Contact> contacts(BodyId a, BodyId b) const;
     /// What touched in the last step and does not in this one, in the same order; `Contact::is_new` marks the new ones.

@@ -10,12 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._core import InputError
+from ._memory import is_on_cuda, to_host
 
 
 def as_numbers(value: Any, what: str, kinds: str = "fiu") -> NDArray[Any]:
-    """A NumPy array of anything that is one: lists, arrays, tensors of other libraries in the host's memory."""
+    """A NumPy array of anything that is one: lists, arrays, tensors of other libraries in the memory of the host or of a
+    CUDA device."""
     try:
-        if not hasattr(value, "__array__") and hasattr(value, "__dlpack__"):
+        if is_on_cuda(value):
+            array = to_host(value, what)
+        elif not hasattr(value, "__array__") and hasattr(value, "__dlpack__"):
             array = np.from_dlpack(value)
         else:
             array = np.asarray(value)

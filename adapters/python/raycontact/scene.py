@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from . import _core
 from ._arrays import Batch, as_count, as_id, as_ids, as_length, as_pairs, as_points, as_pose, as_poses
 from ._core import InputError, StepStats
+from ._memory import as_column
 from .contacts import Contacts
 from .shape import Shape, ShapeLike, Shapes, as_shape, as_shapes
 
@@ -175,7 +176,8 @@ class Scene:
         """Moves bodies: all or none.
 
         ids: one or (n,). poses: (n, 4, 4), or (4, 4) for all, from the body's frame to the world, metres, taken as they
-            are (`nearest_rigid` mends those that drifted).
+            are (`nearest_rigid` mends those that drifted). Of a CUDA device, too: what has a
+            `__cuda_array_interface__` (torch, CuPy, Numba, Warp, JAX) is read when its stream has written it.
         Raises InputError naming the place in the list: an id that is not in the scene, a pose that is not finite and
         rigid to 1e-4; and where numbers of ids and poses differ.
         """
@@ -262,6 +264,19 @@ class Scene:
     def contacts(self) -> Contacts:
         """Of the last step."""
         return Contacts._from_bytes(self._core.contacts)
+
+    def write_contacts(self, **columns: Any) -> int:
+        """Writes columns of the last step's contacts into arrays of your own, in the host's memory or a CUDA device's,
+        in the order of `contacts`; returns how many there are. Rows behind them stay as they are.
+
+        columns: by the names of Contacts, each a contiguous array, (rows,) or (rows, numbers of a contact), of NumPy or
+            with a `__cuda_array_interface__` (torch, CuPy, Numba, Warp, JAX), of the column's type; integers may be
+            signed, and `point_a` and `point_b` are float64 or float32. Of a CUDA device they are there for what the
+            array's stream is given afterwards.
+        Raises InputError, before anything is written, naming a column that is unknown, of another type or shape, or has
+        fewer rows than there are contacts.
+        """
+        return self._core.write_contacts([as_column(name, array) for name, array in columns.items()])
 
     @property
     def lost_contacts(self) -> LostContacts:

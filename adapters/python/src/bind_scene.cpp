@@ -13,10 +13,13 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
 #include <cstddef>
+#include <string>
+#include <tuple>
 
 namespace raycontact::python {
 
@@ -100,6 +103,24 @@ nb::tuple lost_contacts(GuardedScene& guarded) {
     return nb::make_tuple(array_of(std::move(bodies), {lost.size(), 2}), array_of(std::move(keys), {lost.size()}));
 }
 
+UserMemory memory_at(bool is_cuda, std::uint64_t address, std::size_t bytes, std::uint64_t stream) {
+    if (is_cuda) return UserMemory::cuda(address, bytes, reinterpret_cast<void*>(stream));
+    return UserMemory::host({reinterpret_cast<std::byte*>(address), bytes});
+}
+
+/// Name, whether on a CUDA device, address, bytes, stream, whether points are in float32.
+using Column = std::tuple<std::string, bool, std::uint64_t, std::size_t, std::uint64_t, bool>;
+
+std::size_t write_contacts(GuardedScene& guarded, const std::vector<Column>& columns) {
+    const auto scene = guarded.enter();
+    const WithoutGil without_gil;
+    std::vector<ContactOutput> outputs;
+    for (const auto& [name, is_cuda, address, bytes, stream, single] : columns)
+        outputs.push_back({contact_column_from(name), memory_at(is_cuda, address, bytes, stream),
+                           single ? NumberType::float32 : NumberType::float64});
+    return scene->write_contacts(outputs);
+}
+
 Array pairs_array(std::span<const Pair> pairs) {
     std::vector<std::int64_t> numbers;
     numbers.reserve(2 * pairs.size());
@@ -110,6 +131,13 @@ Array pairs_array(std::span<const Pair> pairs) {
 } // namespace
 
 void bind_scene(nb::module_& m) {
+    m.def(
+        "copy_from_cuda",
+        [](std::uint64_t address, std::uint64_t stream, std::uint64_t to, std::size_t bytes) {
+            const WithoutGil without_gil;
+            memory_at(true, address, bytes, stream).read({reinterpret_cast<std::byte*>(to), bytes});
+        },
+        "address"_a, "stream"_a, "to"_a, "bytes"_a);
     nb::class_<GuardedScene>(m, "Scene")
         .def(
             "__init__",
@@ -128,6 +156,7 @@ void bind_scene(nb::module_& m) {
             },
             "ids"_a)
         .def("set_poses", &set_poses, "ids"_a, "poses"_a)
+        .def("write_contacts", &write_contacts, "columns"_a)
         .def(
             "poses",
             [](GuardedScene& guarded, const Ids& ids) {

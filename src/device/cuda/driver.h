@@ -70,6 +70,8 @@ struct Driver {
         library, "cuMemcpyDtoHAsync_v2"};
     Function<Status(Address to, Address from, std::size_t bytes, StreamHandle stream)> cuMemcpyDtoDAsync{
         library, "cuMemcpyDtoDAsync_v2"};
+    Function<Status(void* value, int attribute, Address memory)> cuPointerGetAttribute{library,
+                                                                                       "cuPointerGetAttribute"};
     Function<Status(FunctionHandle function, unsigned blocks_x, unsigned blocks_y, unsigned blocks_z,
                     unsigned threads_x, unsigned threads_y, unsigned threads_z, unsigned shared_bytes,
                     StreamHandle stream, void** arguments, void** extra)>

@@ -10,41 +10,30 @@
 
 namespace raycontact::cuda {
 
-/// The device's primary context, which all who use the device in this process share, and our own stream in it.
-class Context {
+/// The device's primary context, which all who use the device in this process share.
+class PrimaryContext {
 public:
-    explicit Context(DeviceNumber device);
-    ~Context() {
-        when_current([&] { driver().cuStreamDestroy(stream_); });
-        driver().cuDevicePrimaryCtxRelease(device_);
+    explicit PrimaryContext(DeviceNumber device) : device_(device) {
+        check(driver().cuDevicePrimaryCtxRetain(&handle_, device), "cuDevicePrimaryCtxRetain");
     }
-    Context(const Context&) = delete;
-    Context& operator=(const Context&) = delete;
+    ~PrimaryContext() { driver().cuDevicePrimaryCtxRelease(device_); }
+    PrimaryContext(const PrimaryContext&) = delete;
+    PrimaryContext& operator=(const PrimaryContext&) = delete;
 
     ContextHandle handle() const { return handle_; }
-    StreamHandle stream() const { return stream_; }
-
-    /// Releases something while the context is current. For destructors: a lost device releases nothing, and says so to
-    /// nobody.
-    template <typename Release>
-    void when_current(Release release) const {
-        if (driver().cuCtxPushCurrent(handle_) != 0) return;
-        release();
-        ContextHandle popped = nullptr;
-        driver().cuCtxPopCurrent(&popped);
-    }
 
 private:
     DeviceNumber device_;
     ContextHandle handle_ = nullptr;
-    StreamHandle stream_ = nullptr;
 };
 
 /// Makes a context the calling thread's, and puts back what was current when it goes: threads change between calls, and
 /// the caller may use CUDA, too.
 class Current {
 public:
-    explicit Current(const Context& context) { check(driver().cuCtxPushCurrent(context.handle()), "cuCtxPushCurrent"); }
+    explicit Current(const PrimaryContext& context) {
+        check(driver().cuCtxPushCurrent(context.handle()), "cuCtxPushCurrent");
+    }
     ~Current() {
         ContextHandle popped = nullptr;
         driver().cuCtxPopCurrent(&popped);
@@ -53,17 +42,35 @@ public:
     Current& operator=(const Current&) = delete;
 };
 
-inline Context::Context(DeviceNumber device) : device_(device) {
-    check(driver().cuDevicePrimaryCtxRetain(&handle_, device), "cuDevicePrimaryCtxRetain");
-    try {
+/// It, and our own stream in it.
+class Context : public PrimaryContext {
+public:
+    explicit Context(DeviceNumber device) : PrimaryContext(device) {
         constexpr unsigned non_blocking = 1; // does not wait for the streams of others
         const Current current(*this);
         check(driver().cuStreamCreate(&stream_, non_blocking), "cuStreamCreate");
-    } catch (const DeviceError&) {
-        driver().cuDevicePrimaryCtxRelease(device);
-        throw;
     }
-}
+    ~Context() {
+        when_current([&] { driver().cuStreamDestroy(stream_); });
+    }
+    Context(const Context&) = delete;
+    Context& operator=(const Context&) = delete;
+
+    StreamHandle stream() const { return stream_; }
+
+    /// Releases something while the context is current. For destructors: a lost device releases nothing, and says so to
+    /// nobody.
+    template <typename Release>
+    void when_current(Release release) const {
+        if (driver().cuCtxPushCurrent(handle()) != 0) return;
+        release();
+        ContextHandle popped = nullptr;
+        driver().cuCtxPopCurrent(&popped);
+    }
+
+private:
+    StreamHandle stream_ = nullptr;
+};
 
 /// Releases a handle in its context.
 template <auto release>

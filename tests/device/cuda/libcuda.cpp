@@ -43,6 +43,7 @@ using Bytes = std::vector<std::byte>;
 struct State : FakeCuda {
     std::map<const std::byte*, Bytes> memory, host;
     std::map<const void*, std::unique_ptr<Stream>> streams;
+    Stream default_stream; ///< null
     std::map<const void*, std::unique_ptr<Event>> events;
     std::map<const void*, std::unique_ptr<Module>> modules;
     int retained = 0, current = 0;
@@ -81,6 +82,12 @@ void* pointer(Address address) {
     return reinterpret_cast<void*>(address);
 }
 
+// Null: there is none.
+Stream* find_stream(Stream* handle) {
+    if (handle == nullptr) return &fake().default_stream;
+    return fake().streams.count(handle) ? handle : nullptr;
+}
+
 void run_until(Stream& stream, std::size_t after) {
     for (; stream.done < after && !stream.pending.empty(); ++stream.done) {
         const Copy& copy = stream.pending.front();
@@ -90,8 +97,8 @@ void run_until(Stream& stream, std::size_t after) {
 }
 
 int enqueue(const char* name, Stream* stream, void* to, const void* from, std::size_t bytes, bool wrong) {
-    if (misused(name, wrong || !fake().streams.count(stream) || bytes == 0)) return invalid;
-    stream->pending.push_back({static_cast<std::byte*>(to), static_cast<const std::byte*>(from), bytes});
+    if (misused(name, wrong || !find_stream(stream) || bytes == 0)) return invalid;
+    find_stream(stream)->pending.push_back({static_cast<std::byte*>(to), static_cast<const std::byte*>(from), bytes});
     return 0;
 }
 
@@ -231,8 +238,8 @@ int cuStreamCreate(Stream** stream, unsigned) {
 }
 int cuStreamSynchronize(Stream* stream) {
     ENTER;
-    if (misused(__func__, !fake().streams.count(stream))) return invalid;
-    run_until(*stream, ~std::size_t{0});
+    if (misused(__func__, !find_stream(stream))) return invalid;
+    run_until(*find_stream(stream), ~std::size_t{0});
     return 0;
 }
 int cuStreamDestroy_v2(Stream* stream) {
@@ -316,6 +323,13 @@ int cuMemcpyDtoDAsync_v2(Address to, Address from, std::size_t bytes, Stream* st
     ENTER;
     const bool there = lies_in(fake().memory, pointer(to), bytes) && lies_in(fake().memory, pointer(from), bytes);
     return enqueue(__func__, stream, pointer(to), pointer(from), bytes, !there);
+}
+int cuPointerGetAttribute(void* value, int attribute, Address memory) {
+    ENTER;
+    constexpr int ordinal = 9;
+    if (attribute != ordinal || !lies_in(fake().memory, pointer(memory), 1)) return invalid;
+    *static_cast<int*>(value) = 0;
+    return 0;
 }
 int cuLaunchKernel(Function* function, unsigned groups, unsigned y, unsigned z, unsigned group_size, unsigned threads_y,
                    unsigned threads_z, unsigned, Stream* stream, void** arguments, void**) {

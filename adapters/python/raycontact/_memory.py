@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Arrays in the memory of CUDA devices, by __cuda_array_interface__ (torch, CuPy, Numba, Warp, JAX)."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple, Optional
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _core
+from ._core import InputError
+
+
+class _Stretch(NamedTuple):
+    """Contiguous memory. stream: 0 is CUDA's default; of the host's memory it means nothing."""
+
+    is_cuda: bool
+    address: int
+    shape: tuple[int, ...]
+    dtype: np.dtype[Any]
+    stream: int
+    read_only: bool
+
+    @property
+    def bytes(self) -> int:
+        return int(np.prod(self.shape, dtype=np.int64)) * self.dtype.itemsize
+
+
+def is_on_cuda(value: Any) -> bool:
+    return hasattr(type(value), "__cuda_array_interface__") or "__cuda_array_interface__" in getattr(
+        value, "__dict__", ()
+    )
+
+
+def _on_cuda(value: Any, what: str) -> _Stretch:
+    try:
+        told = value.__cuda_array_interface__
+    except Exception as error:  # a tensor that wants its gradient, say
+        raise InputError(f"{what}: {error}") from None
+    dtype, shape = np.dtype(told["typestr"]), tuple(told["shape"])
+    strides = told.get("strides")
+    if strides is not None and tuple(strides) != _contiguous(shape, dtype.itemsize):
+        raise InputError(f"{what}: is not contiguous; give a contiguous copy")
+    address, read_only = told["data"]
+    return _Stretch(True, int(address), shape, dtype, int(told.get("stream") or 0), bool(read_only))
+
+
+def _contiguous(shape: tuple[int, ...], size: int) -> tuple[int, ...]:
+    strides = []
+    for length in reversed(shape):
+        strides.append(size)
+        size *= length
+    return tuple(reversed(strides))
+
+
+def to_host(value: Any, what: str) -> NDArray[Any]:
+    """A copy, made when what its stream was given before is done."""
+    memory = _on_cuda(value, what)
+    array = np.empty(memory.shape, memory.dtype)
+    if array.size > 0:
+        _core.copy_from_cuda(memory.address, memory.stream, array.ctypes.data, memory.bytes)
+    return array
+
+
+# Types that hold the bytes of a column: signed ones, too, as not every library has others.
+_types = {
+    "bodies": ("i8", "u8"),
+    "slots": ("u4", "i4"),
+    "key": ("u8", "i8"),
+    "kind": ("u1", "i1"),
+    "source": ("u1", "i1"),
+    "indices": ("u4", "i4"),
+    "is_new": ("b1", "u1", "i1"),
+    "point_a": ("f8", "f4"),
+    "point_b": ("f8", "f4"),
+    "normal": ("f4",),
+    "depth": ("f4",),
+    "ray_length": ("f4",),
+    "weight": ("f4",),
+}
+_tails = {"bodies": (2,), "slots": (2,), "indices": (2,), "point_a": (3,), "point_b": (3,), "normal": (3,)}
+
+
+def as_column(name: str, value: Any) -> tuple[str, bool, int, int, int, bool]:
+    """What the C++ half takes: name, on CUDA, address, bytes, stream, in float32."""
+    if name not in _types:
+        raise InputError(f"contacts have no column {name!r}; choose from {', '.join(_types)}")
+    memory: Optional[_Stretch] = None
+    if is_on_cuda(value):
+        memory = _on_cuda(value, name)
+    elif isinstance(value, np.ndarray):
+        if not value.flags.c_contiguous:
+            raise InputError(f"{name}: is not contiguous; give a contiguous array")
+        memory = _Stretch(False, value.ctypes.data, value.shape, value.dtype, 0, not value.flags.writeable)
+    if memory is None:
+        raise InputError(f"{name}: is no NumPy array, and has no __cuda_array_interface__")
+    wanted = [np.dtype(code) for code in _types[name]]
+    if memory.dtype not in wanted:
+        raise InputError(f"{name}: holds {memory.dtype.name}; give {' or '.join(one.name for one in wanted)}")
+    tail = _tails.get(name, ())
+    if len(memory.shape) != 1 + len(tail) or memory.shape[1:] != tail:
+        raise InputError(f"{name}: has shape {memory.shape}; give (rows{''.join(f', {n}' for n in tail)}{'' if tail else ','})")
+    if memory.read_only:
+        raise InputError(f"{name}: is read-only")
+    single = name.startswith("point_") and memory.dtype == np.float32
+    return name, memory.is_cuda, memory.address, memory.bytes, memory.stream, single
