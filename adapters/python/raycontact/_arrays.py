@@ -14,8 +14,7 @@ from ._memory import is_on_cuda, to_host
 
 
 def as_numbers(value: Any, what: str, kinds: str = "fiu") -> NDArray[Any]:
-    """A NumPy array of anything that is one: lists, arrays, tensors of other libraries in the memory of the host or of a
-    CUDA device."""
+    """A NumPy array of anything that is one: lists, arrays, tensors of other libraries, of CUDA devices, too."""
     try:
         if is_on_cuda(value):
             array = to_host(value, what)

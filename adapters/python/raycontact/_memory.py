@@ -28,9 +28,14 @@ class _Stretch(NamedTuple):
 
 
 def is_on_cuda(value: Any) -> bool:
-    return hasattr(type(value), "__cuda_array_interface__") or "__cuda_array_interface__" in getattr(
-        value, "__dict__", ()
-    )
+    if isinstance(value, (np.ndarray, list, tuple, int, float)):
+        return False
+    try:
+        return value.__cuda_array_interface__ is not None
+    except AttributeError:  # of a tensor in the host's memory, too
+        return False
+    except Exception:  # a tensor that wants its gradient, say: to_host() tells
+        return True
 
 
 def _on_cuda(value: Any, what: str) -> _Stretch:
@@ -100,7 +105,9 @@ def as_column(name: str, value: Any) -> tuple[str, bool, int, int, int, bool]:
         raise InputError(f"{name}: holds {memory.dtype.name}; give {' or '.join(one.name for one in wanted)}")
     tail = _tails.get(name, ())
     if len(memory.shape) != 1 + len(tail) or memory.shape[1:] != tail:
-        raise InputError(f"{name}: has shape {memory.shape}; give (rows{''.join(f', {n}' for n in tail)}{'' if tail else ','})")
+        raise InputError(
+            f"{name}: has shape {memory.shape}; give (rows{''.join(f', {n}' for n in tail)}{'' if tail else ','})"
+        )
     if memory.read_only:
         raise InputError(f"{name}: is read-only")
     single = name.startswith("point_") and memory.dtype == np.float32
