@@ -139,8 +139,9 @@ void add_common_options(CLI::App& command, raycontact::Settings& settings) {
     add_number(command, "--max-contacts", settings.max_contacts,
                "the same for a whole step; each pair keeps its deepest; 0: all", 0u, most);
     add_word(command, "--devices",
-             "auto, all (every GPU), or a list of devices as `raycontact devices` names them, which share the pairs; "
-             "cpu/k and opencl:i/k are one core alone",
+             "auto (the CPU or the first GPU, whichever is faster when both are tried), all (every GPU), or a list of "
+             "devices as `raycontact devices` names them, which share the pairs; cpu/k and opencl:i/k are one core "
+             "alone",
              "LIST", settings.execution.devices, [&](const std::string& word) {
                  Settings alone;
                  alone.execution.devices = word;

@@ -10,6 +10,8 @@
 
 #include <iostream>
 #include <memory>
+#include <string>
+#include <vector>
 
 namespace {
 
@@ -43,18 +45,21 @@ void print_table(const std::vector<raycontact::DeviceInfo>& devices) {
     }
 }
 
-std::string chosen(const char* devices, raycontact::Method method) {
+std::vector<std::string> chosen(const char* devices) {
     raycontact::Settings settings;
     settings.execution.devices = devices;
-    settings.method = method;
-    return fmt::format("{}", fmt::join(raycontact::chosen_devices(settings), ","));
+    return raycontact::chosen_devices(settings);
 }
 
 void print_choices() {
-    using raycontact::Method;
-    std::cout << fmt::format("--devices auto is {} with --method certified and {} with the others; all is {}\n",
-                             chosen("auto", Method::certified), chosen("auto", Method::standard),
-                             chosen("all", Method::standard));
+    const std::vector<std::string> candidates = chosen("auto");
+    std::cout << "--devices auto "
+              << (candidates.size() == 1
+                      ? "is cpu: there is no GPU"
+                      : fmt::format("begins with cpu, tries {} once steps take long enough, and goes on with the "
+                                    "faster one",
+                                    candidates.back()))
+              << fmt::format("; all is {}\n", fmt::join(chosen("all"), ","));
 }
 
 } // namespace

@@ -41,6 +41,7 @@ Json summary(const recording::Reader& reader, const recording::Replay& replay, c
     const Settings& recorded = reader.info().settings;
     const Work work(replay.steps);
     const bool cut_short = replay.steps.size() < reader.steps();
+    const Json devices = work_of_devices(replay.steps);
     Json result{{"scene", reader.info().scene},
                 {"seed", reader.info().seed},
                 {"steps", replay.steps.size()},
@@ -60,9 +61,10 @@ Json summary(const recording::Reader& reader, const recording::Replay& replay, c
                 {"caster", to_string(settings.paper.caster)},
                 {"direction", to_string(settings.direction)},
                 {"features", to_string(settings.features)},
-                {"devices", chosen_devices(settings)},
+                {"devices", devices_of(devices)},
+                {"device_choice", replay.device_choice},
                 {"schedule", to_string(settings.execution.schedule)},
-                {"work", work_of_devices(replay.steps)},
+                {"work", devices},
                 {"hash", replay.hash},
                 {"recorded_hash", nullptr},
                 {"hash_reproduced", nullptr},
@@ -120,7 +122,8 @@ std::string for_a_person(const Json& s) {
     if (s["cut_short"].get<bool>())
         text += fmt::format("cut short  by {}: {} steps of {}\n", stop_name(), s["steps"].get<std::uint64_t>(),
                             s["steps_planned"].get<std::uint64_t>());
-    text += work_for_a_person(s) + devices_for_a_person(s["work"]) + "hash       " + hash_for_a_person(s) + "\n";
+    text += work_for_a_person(s) + devices_for_a_person(s["work"], s["device_choice"].get<std::string>())
+            + "hash       " + hash_for_a_person(s) + "\n";
     if (s.contains("wrong_rays")) {
         const Json& wrong = s["wrong_rays"];
         text +=

@@ -60,6 +60,7 @@ Json summary(const RunOptions& options, const Simulation& scene, double wall_ms)
     const raycontact::StepStats& sum = work.sum();
     const auto second = static_cast<std::ptrdiff_t>(std::min<std::size_t>(steps_of_a_second(log.dt), log.rows.size()));
     const std::vector<StepRow> last_second(log.rows.end() - second, log.rows.end());
+    const Json devices = work_of_devices(log.rows);
     Json result{
         {"scene", log.scene},
         {"seed", log.seed},
@@ -81,9 +82,10 @@ Json summary(const RunOptions& options, const Simulation& scene, double wall_ms)
         {"caster", to_string(options.settings.paper.caster)},
         {"direction", to_string(options.settings.direction)},
         {"features", to_string(options.settings.features)},
-        {"devices", chosen_devices(options.settings)},
+        {"devices", devices_of(devices)},
+        {"device_choice", scene.scene().device_choice()},
         {"schedule", to_string(options.settings.execution.schedule)},
-        {"work", work_of_devices(log.rows)},
+        {"work", devices},
         {"hash", scene.hash()},
         {"mesh_source", log.mesh_source},
         {"pairs_last_second", quantile(last_second, 0.5, [](const StepRow& r) { return double(r.pairs); })},
@@ -126,8 +128,8 @@ std::string for_a_person(const Json& s) {
     if (s["cut_short"].get<bool>())
         text += fmt::format("cut short  by {}: {} steps of {}\n", stop_name(), s["steps"].get<std::uint64_t>(),
                             s["steps_planned"].get<std::uint64_t>());
-    return text + work_for_a_person(s) + devices_for_a_person(s["work"]) + "hash       " + s["hash"].get<std::string>()
-           + "\n";
+    return text + work_for_a_person(s) + devices_for_a_person(s["work"], s["device_choice"].get<std::string>())
+           + "hash       " + s["hash"].get<std::string>() + "\n";
 }
 
 std::string steps_csv(const std::vector<StepRow>& rows) {

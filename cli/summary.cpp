@@ -103,8 +103,14 @@ std::string work_for_a_person(const Json& s) {
                          static_cast<double>(count("pair_bytes_max")) / 1e6);
 }
 
-std::string devices_for_a_person(const Json& list) {
-    std::string text;
+Json devices_of(const Json& list) {
+    Json ids = Json::array();
+    for (const Json& entry : list) ids.push_back(entry.at("device"));
+    return ids;
+}
+
+std::string devices_for_a_person(const Json& list, const std::string& choice) {
+    std::string text = "devices    " + choice + "\n";
     for (const Json& entry : list) {
         const auto median = [&](const char* key) { return entry.at(key).at("median").get<double>(); };
         const auto counted = [&](const char* key, const char* one, const char* many) {

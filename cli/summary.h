@@ -42,14 +42,18 @@ private:
     raycontact::StepStats sum_;
 };
 
-/// What each device did: a list of {"device", "pairs": {"median", "max"}, "launches", ...} over the steps.
+/// What each device did: a list of {"device", "pairs": {"median", "max"}, "launches", ...} over the steps. A device
+/// that was opened later did nothing before.
 template <class Row>
 nlohmann::ordered_json work_of_devices(const std::vector<Row>& rows) {
     nlohmann::ordered_json list = nlohmann::ordered_json::array();
-    for (std::size_t d = 0; !rows.empty() && d < rows.front().details.work.size(); ++d) {
-        nlohmann::ordered_json entry{{"device", rows.front().details.work[d].device}};
+    for (std::size_t d = 0; !rows.empty() && d < rows.back().details.work.size(); ++d) {
+        nlohmann::ordered_json entry{{"device", rows.back().details.work[d].device}};
         const auto put = [&](const char* key, auto raycontact::DeviceWork::*value) {
-            const auto of = [&](const Row& row) { return static_cast<double>(row.details.work[d].*value); };
+            const auto of = [&](const Row& row) {
+                const auto& work = row.details.work;
+                return d < work.size() ? static_cast<double>(work[d].*value) : 0.0;
+            };
             entry[key] = {{"median", quantile(rows, 0.5, of)}, {"max", quantile(rows, 1, of)}};
         };
         put("pairs", &raycontact::DeviceWork::pairs);
@@ -73,8 +77,11 @@ void print_warnings(const std::vector<Row>& rows) {
             std::cerr << "raycontact: warning: step " << i << ": " << warning << '\n';
 }
 
-/// A line for each entry of that list.
-std::string devices_for_a_person(const nlohmann::ordered_json& list);
+/// The ids of that list.
+nlohmann::ordered_json devices_of(const nlohmann::ordered_json& list);
+
+/// A line for each entry of that list, and one that says which device has the pairs and why.
+std::string devices_for_a_person(const nlohmann::ordered_json& list, const std::string& choice);
 
 /// The settings that decide how much is looked at; lengths in metres, null where the library chooses.
 void put_settings(nlohmann::ordered_json& object, const raycontact::Settings& settings);

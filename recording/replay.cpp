@@ -143,6 +143,7 @@ Replay replay(Reader& reader, const ReplayOptions& options) {
         if (options.stop && options.stop()) break;
     }
     result.hash = hash.hex();
+    result.device_choice = follower.scene().device_choice();
     return result;
 }
 

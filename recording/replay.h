@@ -57,6 +57,7 @@ struct Replay {
     double ray_length = 0, penetration_max = 0; ///< metres
     std::vector<ReplayStep> steps;
     std::string hash;
+    std::string device_choice;           ///< Scene::device_choice() at the end
     std::optional<WrongRays> wrong_rays; ///< when it was compared
 };
 

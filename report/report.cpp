@@ -83,15 +83,20 @@ std::vector<Plot> plots_of(const scenes::RunLog& log) {
          "Half of the moving bodies are slower than this at the end of the step.",
          {line(log, "speed", [](const StepRow& r) { return r.median_speed; })}},
     };
-    const std::size_t devices = log.rows.front().details.work.size();
+    const std::vector<DeviceWork>& opened = log.rows.back().details.work; // some later than others
+    const std::size_t devices = opened.size();
     if (devices > 1) {
         Plot load{
             "Load of devices", "pairs at rest", "What each device had to do, counted: pairs, vertices and rays.", {}};
         Plot time{"Time of devices", "ms", "Wall clock of each device's part of a step; they work side by side.", {}};
         for (std::size_t d = 0; d < devices; ++d) {
-            const char* id = log.rows.front().details.work[d].device.c_str();
-            load.lines.push_back(line(log, id, [d](const StepRow& r) { return r.details.work[d].load; }));
-            time.lines.push_back(line(log, id, [d](const StepRow& r) { return r.details.work[d].ms; }));
+            const auto add = [&](Plot& plot, double DeviceWork::*value) {
+                plot.lines.push_back(line(log, opened[d].device.c_str(), [d, value](const StepRow& r) {
+                    return d < r.details.work.size() ? r.details.work[d].*value : 0;
+                }));
+            };
+            add(load, &DeviceWork::load);
+            add(time, &DeviceWork::ms);
         }
         plots.push_back(load);
         plots.push_back(time);

@@ -75,6 +75,7 @@ constexpr Known known[] = {
     {"max_contacts", "Contacts a step", "", "at most, but the deepest of each pair; 0: all"},
     {"contacts_reduced", "Contacts left out", "", "by these limits, in all steps together"},
     {"devices", "Devices", "", "that cast the rays"},
+    {"device_choice", "Device in use", "", "and why, at the end"},
     {"schedule", "Schedule", "", "which device a pair is on"},
     {"pairs_moved", "Pairs moved", "pairs", "from one device to another, in all steps together"},
     {"bytes_moved", "State moved", "bytes", "what was kept for them"},

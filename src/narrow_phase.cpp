@@ -7,6 +7,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <exception>
+#include <string>
+#include <tuple>
 #include <utility>
 
 namespace raycontact {
@@ -27,15 +30,39 @@ std::vector<double> costs_of(Parts& parts) {
 
 } // namespace
 
-NarrowPhase::NarrowPhase(const Settings& settings) : NarrowPhase(settings, open_devices(settings)) {}
+NarrowPhase::NarrowPhase(const Settings& settings)
+    : NarrowPhase(settings, open_devices(settings), gpu_opener(settings)) {}
 
-NarrowPhase::NarrowPhase(const Settings& settings, std::vector<OpenDevice> opened)
+NarrowPhase::NarrowPhase(const Settings& settings, std::vector<OpenDevice> opened, Opener open_other)
     : settings_(settings), parts_(std::move(opened)), balance_(settings.execution.schedule, costs_of(parts_)),
-      assignment_(parts_.size()), found_(parts_.size()) {}
+      assignment_(parts_.size()), open_other_(std::move(open_other)), found_(parts_.size()) {
+    if (!open_other_) return;
+    choice_.emplace();
+    balance_.choose(in_use_);
+    if (settings.execution.schedule == Schedule::counted)
+        choice_->exclude(1, "schedule counted goes by no clock, so nothing is measured");
+}
 
 void NarrowPhase::set_settings(const Settings& settings) {
+    const auto cost = [](const Settings& s) {
+        return std::tuple(s.method, s.features, s.is_speculative(), s.speculative_margin, s.paper);
+    };
+    if (choice_ && cost(settings) != cost(settings_)) choice_->forget();
     settings_ = settings;
     parts_.forget();
+}
+
+std::string NarrowPhase::device_choice() const {
+    if (choice_) return choice_->text({parts_.device(0), parts_.size() > 1 ? parts_.device(1) : "a GPU"});
+    std::string text;
+    for (std::size_t i = 0; i < parts_.size(); ++i) text += (i > 0 ? "," : "") + parts_.device(i);
+    return text + ": as given";
+}
+
+void NarrowPhase::wake() {
+    if (!choice_) return parts_.wake();
+    parts_.executor().wake();
+    if (parts_.has(in_use_)) parts_[in_use_].executor().wake();
 }
 
 void NarrowPhase::step(std::span<const PlacedBody> bodies, const MovedBodies& moved, std::span<const SlotPair> pairs,
@@ -47,15 +74,18 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, const MovedBodies& mo
     try {
         if (const auto lost = parts_.take_lost(); !lost.empty()) give_away(lost, stats);
         assignment_.assign(pairs, balance_);
+        if (choice_) choose_device(bodies, stats);
         for (std::size_t i = 0; i + 1 < parts_.size(); ++i) {
             const auto move = balance_.next_move();
             if (!move || !move_pairs(*move, bodies, stats)) break;
         }
         const bool alone = parts_.left() == 1;
-        auto failed =
-            parts_.run([&](std::size_t part) { find(part, bodies, moved, alone ? contacts : found_[part].contacts); });
+        const auto has_all = [&](std::size_t part) { return alone || (choice_ && part == in_use_); };
+        auto failed = parts_.run(
+            [&](std::size_t part) { find(part, bodies, moved, has_all(part) ? contacts : found_[part].contacts); });
+        const bool shared = !alone && (!choice_ || std::ranges::find(failed, in_use_) != failed.end());
         while (!failed.empty()) failed = replace(failed, stats);
-        if (!alone) merge(contacts);
+        if (shared) merge(contacts);
         reducer_.run(parts_.executor(), settings_, bodies, changes_, contacts);
         changes_.mark(parts_.executor(), contacts);
     } catch (...) {
@@ -138,8 +168,35 @@ std::vector<std::vector<SlotPair>> NarrowPhase::give_away(const std::vector<std:
     for (const std::size_t part : failed) {
         balance_.drop(part);
         found_[part].contacts.clear();
+        if (choice_) choice_->exclude(part, parts_.device(part) + " failed");
     }
     return assignment_.give_away(failed, balance_);
+}
+
+void NarrowPhase::choose_device(std::span<const PlacedBody> bodies, StepStats& stats) {
+    const std::size_t to = choice_->part();
+    if (to == in_use_) return;
+    // A new part learns in this step where the bodies are. From the next on it knows how fast they move, as the other.
+    if (to == parts_.size()) return open_other();
+    if (parts_.has(in_use_)) move_pairs({in_use_, to, 1}, bodies, stats);
+    in_use_ = choice_->part(); // the same one, if the other has failed
+    balance_.choose(in_use_);
+}
+
+// What does not open is not missed: the CPU has found all contacts so far.
+void NarrowPhase::open_other() {
+    try {
+        std::optional<OpenDevice> opened = std::exchange(open_other_, {})();
+        if (!opened) return choice_->exclude(1, "there is no GPU");
+        found_.emplace_back();
+        assignment_.add_part();
+        balance_.add(1.0 / std::max(1u, opened->device->info().cores));
+        parts_.add(std::move(*opened)); // last: without it the rest means nothing
+    } catch (const std::exception& error) {
+        choice_->exclude(1, "the GPU does not open");
+        parts_.warn(std::string("devices \"auto\" goes on with the CPU alone, since the GPU does not open: ")
+                    + error.what());
+    }
 }
 
 // A part that fails here has failed before the step: its pairs are new to the others.
@@ -153,7 +210,9 @@ bool NarrowPhase::move_pairs(const Balance::Move& move, std::span<const PlacedBo
         assignment_.move(moving.pairs, move.to);
         stats.details.pairs_moved += moving.pairs.size();
         stats.details.bytes_moved += state.size();
-        balance_.record_move({move.from, move.to, moving.share}, milliseconds_since(start));
+        const double ms = milliseconds_since(start);
+        balance_.record_move({move.from, move.to, moving.share}, ms);
+        if (choice_) choice_->record_move(ms);
     } else {
         give_away(failed, stats);
     }
@@ -202,6 +261,8 @@ void NarrowPhase::count(std::size_t pair_count, StepStats& stats) {
         balance_.record(i, work.load, work.ms);
     }
     balance_.end_step(pair_count);
+    if (choice_ && stats.devices_lost == 0 && in_use_ == choice_->part())
+        choice_->record(pair_count, found_[in_use_].ms);
     stats.warnings = parts_.take_warnings();
 }
 

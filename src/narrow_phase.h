@@ -5,6 +5,10 @@
 #include "contacts/reduce.h"
 #include "part/parts.h"
 #include "schedule/assignment.h"
+#include "schedule/choice.h"
+
+#include <optional>
+#include <string>
 
 namespace raycontact {
 
@@ -12,12 +16,19 @@ namespace raycontact {
 class NarrowPhase {
 public:
     explicit NarrowPhase(const Settings& settings);
-    /// opened: what settings.execution.devices names, or what stands for it in a test.
-    NarrowPhase(const Settings& settings, std::vector<OpenDevice> opened);
+    /// opened: what settings.execution.devices names, or what stands for it in a test. open_other: where that is
+    /// "auto", for what all pairs may move to.
+    NarrowPhase(const Settings& settings, std::vector<OpenDevice> opened, Opener open_other = {});
 
     Parts& parts() { return parts_; }
     const Assignment& assignment() const { return assignment_; }
     const Settings& settings() const { return settings_; }
+    /// Of "auto"; null for a list.
+    DeviceChoice* choice() { return choice_ ? &*choice_ : nullptr; }
+    /// As Scene's.
+    std::string device_choice() const;
+    /// Begins to wake the threads that the next step will need.
+    void wake();
     /// Forgets what the last method kept.
     void set_settings(const Settings& settings);
 
@@ -40,6 +51,8 @@ private:
         std::vector<Contact> contacts;
         double ms = 0;
     };
+    void choose_device(std::span<const PlacedBody> bodies, StepStats& stats);
+    void open_other();
     bool move_pairs(const Balance::Move& move, std::span<const PlacedBody> bodies, StepStats& stats);
     void find(std::size_t part, std::span<const PlacedBody> bodies, const MovedBodies& moved,
               std::vector<Contact>& contacts);
@@ -53,6 +66,9 @@ private:
     Parts parts_;
     Balance balance_;
     Assignment assignment_;
+    Opener open_other_; ///< empty once it was asked
+    std::optional<DeviceChoice> choice_;
+    std::size_t in_use_ = 0;                     ///< with a choice: the part that has all pairs
     std::vector<Found> found_;                   ///< by part; without contacts once it is dropped
     std::vector<std::span<const Contact>> rest_; ///< still to be merged
     ContactReducer reducer_;

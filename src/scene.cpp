@@ -91,7 +91,7 @@ struct Scene::State {
 
     /// Wakes the threads, which sleep between steps; for few pairs one thread is enough.
     void call_threads(std::size_t pair_count) {
-        if (pair_count > 256) narrow.parts().wake();
+        if (pair_count > 256) narrow.wake();
     }
 
     void mark(BodySlot slot) noexcept {
@@ -539,6 +539,9 @@ std::uint32_t Scene::device_of_pair(std::size_t i) const {
         throw InputError("Scene::device_of_pair: there is no pair " + std::to_string(i) + "; the last step had "
                          + std::to_string(state_->pairs.size()));
     return static_cast<std::uint32_t>(state_->narrow.assignment().part_of(i));
+}
+std::string Scene::device_choice() const {
+    return state_->narrow.device_choice();
 }
 void Scene::visit_near(const std::function<double(const Vec3& low, const Vec3& high)>& away,
                        const std::function<double()>& farthest, const std::function<void(BodyId)>& visit) const {

@@ -15,6 +15,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <ranges>
 #include <stdexcept>
 
 namespace raycontact::view {
@@ -104,8 +105,8 @@ Found find_contacts(recording::Reader& reader, const ViewOptions& options) {
         found.contacts.push_back(scene.stats().contacts);
         found.depths.push_back(scene.stats().depth_max);
         if (i % options.layer_every == 0) found.layers.push_back(read_layer(scene, i));
-        if (i == 0)
-            for (const DeviceWork& work : scene.stats().details.work) found.devices.push_back(work.device);
+        for (const DeviceWork& work : scene.stats().details.work | std::views::drop(found.devices.size()))
+            found.devices.push_back(work.device);
         if (options.progress) options.progress(reader.steps() + i + 1);
     }
     return found;

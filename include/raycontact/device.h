@@ -42,8 +42,9 @@ struct DeviceWork {
 
 struct Settings;
 
-/// The ids that Execution::devices stands for, "auto" and "all" resolved. Throws InputError for a list that is
-/// malformed or names a device twice or beside its own part; does not open any.
+/// The ids that Execution::devices stands for: of "auto" the CPU and, if there is one, the GPU that a scene may choose
+/// instead. Throws InputError for a list that is malformed or names a device twice or beside its own part; does not
+/// open any.
 RAYCONTACT_API std::vector<std::string> chosen_devices(const Settings& settings);
 
 /// The CPU, then every device that a driver offers, in the same order each time. Never throws for a missing driver.

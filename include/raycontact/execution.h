@@ -19,12 +19,12 @@ enum class Schedule {
 
 /// How a scene is run. Nothing here changes a bit of the result, but for `inexact`. Fixed once a Scene is made.
 struct Execution {
-    /// "auto" (a GPU where one is expected to be faster, else the CPU), "all" (every GPU, or the CPU where there is
-    /// none), or ids of list_devices(), separated by commas: the pairs are shared out among them. "cpu/k", and "ID/k"
-    /// where the driver divides the device, is its k-th core alone.
+    /// "auto" (the CPU or the first GPU, whichever was faster when both were tried; Scene::device_choice() tells),
+    /// "all" (every GPU, or the CPU where there is none), or ids of list_devices(), separated by commas: the pairs are
+    /// shared out among them. "cpu/k", and "ID/k" where the driver divides the device, is its k-th core alone.
     std::string devices = "auto";
     std::uint32_t threads = 0;              ///< of the host; 0: one per core
-    Schedule schedule = Schedule::balanced; ///< of pairs, among several devices
+    Schedule schedule = Schedule::balanced; ///< of pairs, among several devices; `auto` measures nothing with `counted`
     /// Accept a device that rounds differently: its contacts may differ from those of all other devices.
     bool inexact = false;
     friend bool operator==(const Execution&, const Execution&) = default;

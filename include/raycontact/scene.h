@@ -129,6 +129,9 @@ public:
     std::span<const Pair> pairs() const noexcept;
     /// Which entry of StepDetails::work found the contacts of pairs()[i]. Throws InputError for another i.
     std::uint32_t device_of_pair(std::size_t i) const;
+    /// Which device has the pairs, and why, for a person: with devices "auto" as "cpu: 1.2 ms a step, cuda:0 3.41 ms,
+    /// measured with 7650 pairs", milliseconds of the narrow phase's part on a device; else "cpu: as given".
+    std::string device_choice() const;
     /// What the last step of method `predictive` expects to touch next; sorted as contacts; none of other methods. Read
     /// from the devices at each call: for debugging and drawing. Call it before bodies move, come or go. Throws
     /// std::runtime_error where a device fails.

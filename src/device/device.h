@@ -8,7 +8,9 @@
 #include <raycontact/settings.h>
 
 #include <cstddef>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string_view>
@@ -111,7 +113,12 @@ struct OpenDevice {
 /// Opens one device of chosen_devices(). Throws InputError for a device that is unknown or that this version cannot
 /// use. threads: of the host, 0 for one per core. inexact: also opens a device whose bits differ from the others'.
 OpenDevice open_device(std::string_view name, std::uint32_t threads, bool inexact = false);
-/// Opens all that chosen_devices() names.
+/// Opens all that chosen_devices() names; of "auto" the CPU alone.
 std::vector<OpenDevice> open_devices(const Settings& settings);
+/// Opens a device, if there is one. Throws as open_device().
+using Opener = std::function<std::optional<OpenDevice>()>;
+/// For "auto": opens the GPU that a scene may choose instead of the CPU. Drivers are asked once for all scenes, at the
+/// first call. Empty for a list.
+Opener gpu_opener(const Settings& settings);
 
 } // namespace raycontact

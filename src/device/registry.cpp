@@ -19,6 +19,8 @@ namespace raycontact {
 
 namespace {
 
+constexpr std::string_view automatic = "auto";
+
 #ifdef RAYCONTACT_CUDA
 std::unique_ptr<Device> open_cuda(std::string_view name, bool inexact) {
     return cuda::open(name, inexact);
@@ -110,20 +112,32 @@ OpenDevice open_device(std::string_view name, std::uint32_t threads, bool inexac
 
 std::vector<std::string> chosen_devices(const Settings& settings) {
     const bool all = settings.execution.devices == "all";
-    if (!all && settings.execution.devices != "auto") return read_list(settings.execution.devices);
-    // On the CPU `certified` leaves alone most of what a GPU would have to cast in each step.
-    if (!all && settings.method == Method::certified) return {"cpu"};
+    if (!all && settings.execution.devices != automatic) return read_list(settings.execution.devices);
     std::vector<std::string> gpus = every_gpu();
     if (gpus.empty()) return {"cpu"};
-    if (!all) gpus.resize(1);
-    return gpus;
+    if (all) return gpus;
+    return {"cpu", gpus.front()};
 }
 
 std::vector<OpenDevice> open_devices(const Settings& settings) {
+    const Execution& how = settings.execution;
     std::vector<OpenDevice> opened;
-    for (const std::string& id : chosen_devices(settings))
-        opened.push_back(open_device(id, settings.execution.threads, settings.execution.inexact));
+    if (how.devices == automatic) {
+        opened.push_back(open_device("cpu", how.threads));
+        return opened;
+    }
+    for (const std::string& id : chosen_devices(settings)) opened.push_back(open_device(id, how.threads, how.inexact));
     return opened;
+}
+
+Opener gpu_opener(const Settings& settings) {
+    const Execution& how = settings.execution;
+    if (how.devices != automatic) return {};
+    return [threads = how.threads, inexact = how.inexact]() -> std::optional<OpenDevice> {
+        static const std::vector<std::string> gpus = every_gpu();
+        if (gpus.empty()) return std::nullopt;
+        return open_device(gpus.front(), threads, inexact);
+    };
 }
 
 } // namespace raycontact

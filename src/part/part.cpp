@@ -27,9 +27,11 @@ void Part::trim() {
     has_last_ = false;
 }
 
+// Not every method asks for the motion of bodies on every device: all begin anew without it.
 void Part::forget() {
     pipeline_.forget();
-    has_last_ = false;
+    motion_ = {};
+    has_last_ = had_none_ = false;
 }
 
 Update Part::update(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs) const {
@@ -44,16 +46,20 @@ void Part::begin(std::span<const PlacedBody> bodies, const MovedBodies& moved, s
     settings_ = &settings;
     adopted_.clear();
     knows_moves_ = moved.is_next(seen_);
-    may_rest_ = has_last_ && knows_moves_ && can_rest(settings, device_->traits());
+    idle_ = had_none_ && pairs.empty();
+    may_rest_ = !idle_ && has_last_ && knows_moves_ && can_rest(settings, device_->traits());
     seen_ = moved.now();
-    if (needs_motion(settings, device_->traits())) {
+    // Pairs that move here with their state go on by how fast their bodies were in the last step.
+    if (needs_motion(settings, device_->traits()) && !(idle_ && can_rest(settings, device_->traits()))) {
         motion_.update(*executor_, bodies, moved);
         if (settings.is_speculative()) motion_.expect(*executor_, bodies, moved);
     }
-    pipeline_.begin(update(bodies, pairs));
+    if (!idle_) pipeline_.begin(update(bodies, pairs));
 }
 
 void Part::end(std::vector<Contact>& contacts) {
+    had_none_ = pairs_.empty();
+    if (idle_) return contacts.clear();
     const Update now = update(bodies_, pairs_);
     pipeline_.end(now);
     place(now, pipeline_, contacts);

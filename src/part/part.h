@@ -22,7 +22,7 @@ public:
     ShapeStore& shapes() { return shapes_; }
 
     /// Starts a step. bodies: of the scene, by slot. pairs: the part's, sorted, each once. All stay valid until the
-    /// next begin().
+    /// next begin(). A part that goes on without pairs asks nothing of its device.
     void begin(std::span<const PlacedBody> bodies, const MovedBodies& moved, std::span<const SlotPair> pairs,
                const Settings& settings);
     /// The contacts of the step, sorted.
@@ -75,6 +75,8 @@ private:
     std::vector<std::size_t> ends_;      ///< of what slices of last_ become
     MovedBodies::Seen seen_ = 0;
     bool has_last_ = false, may_rest_ = false;
+    bool had_none_ = false;              ///< no pairs in the last step
+    bool idle_ = false;                  ///< no pairs in this one either
     bool knows_moves_ = false;           ///< those since the last step: else any body may have moved
     std::span<const PlacedBody> bodies_; ///< of the step, as what follows
     const MovedBodies* moved_;

@@ -6,21 +6,30 @@
 namespace raycontact {
 
 Parts::Parts(std::vector<OpenDevice> opened) {
-    for (OpenDevice& device : opened) {
-        devices_.push_back(device.device->info().id);
-        parts_.push_back(std::make_unique<Part>(std::move(device)));
-    }
-    faults_.resize(parts_.size());
-    errors_.resize(parts_.size());
+    for (OpenDevice& device : opened) add(std::move(device));
     if (parts_.size() > 1) threads_ = std::make_unique<SideBySide>(parts_.size());
+}
+
+void Parts::add(OpenDevice opened) {
+    std::string id = opened.device->info().id;
+    auto part = std::make_unique<Part>(std::move(opened));
+    if (left() > 0) part->shapes().add_all_of(first().shapes());
+    devices_.push_back(std::move(id));
+    faults_.emplace_back();
+    errors_.emplace_back();
+    parts_.push_back(std::move(part));
 }
 
 std::size_t Parts::left() const {
     return parts_.size() - static_cast<std::size_t>(std::count(parts_.begin(), parts_.end(), nullptr));
 }
 
+Part& Parts::first() const {
+    return **std::ranges::find_if(parts_, [](const auto& part) { return part != nullptr; });
+}
+
 Executor& Parts::executor() {
-    return (*std::ranges::find_if(parts_, [](const auto& part) { return part != nullptr; }))->executor();
+    return first().executor();
 }
 
 void Parts::attempt(std::size_t number, const Function& work) {
@@ -54,7 +63,7 @@ std::vector<std::size_t> Parts::drop_failed() {
 }
 
 std::vector<std::size_t> Parts::run_all(const Function& work) {
-    if (left() < 2) return each(work);
+    if (left() < 2 || !threads_) return each(work);
     threads_->run([&](std::size_t i) { attempt(i, work); });
     return drop_failed();
 }
@@ -80,8 +89,7 @@ void Parts::remove_shape(const Shape* shape) {
 
 // All stores have had the same calls, so a shape has the same index in each.
 kernels::uint Parts::index_of(const Shape* shape) const {
-    const auto any = std::ranges::find_if(parts_, [](const auto& part) { return part != nullptr; });
-    return (*any)->shapes().index_of(shape);
+    return first().shapes().index_of(shape);
 }
 
 bool Parts::pack_shapes() {
@@ -102,7 +110,7 @@ std::size_t Parts::plain_shapes() const {
 }
 
 void Parts::wake() {
-    if (left() > 1) threads_->wake();
+    if (left() > 1 && threads_) threads_->wake();
     for (const auto& part : parts_)
         if (part) part->executor().wake();
 }

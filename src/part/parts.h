@@ -15,6 +15,9 @@ namespace raycontact {
 class Parts {
 public:
     explicit Parts(std::vector<OpenDevice> opened);
+    /// One more part, the last, with the shapes of the others. It and what was one part take turns, without threads of
+    /// their own.
+    void add(OpenDevice opened);
 
     /// Those dropped included: every part keeps its number.
     std::size_t size() const { return parts_.size(); }
@@ -25,8 +28,8 @@ public:
     Executor& executor();
     const std::string& device(std::size_t number) const { return devices_[number]; }
 
-    /// Calls work(number) for every part that is left, each on a thread of its own. Returns those dropped in doing so.
-    /// Throws DeviceError if all failed, and whatever else one of them threw.
+    /// Calls work(number) for every part that is left, each on a thread of its own unless it was added. Returns those
+    /// dropped in doing so. Throws DeviceError if all failed, and whatever else one of them threw.
     template <class Work>
     std::vector<std::size_t> run(Work&& work) {
         return run_all(std::ref(work)); // by reference: std::function would allocate
@@ -51,6 +54,8 @@ public:
     void wake();
     void forget();
 
+    /// Adds to take_warnings().
+    void warn(std::string text) { warnings_.push_back(std::move(text)); }
     /// Whether take_lost() or take_warnings() has something to tell.
     bool has_news() const { return !lost_.empty() || !warnings_.empty(); }
     /// Those dropped by add_shape() and pack_shapes() since the last call.
@@ -59,6 +64,7 @@ public:
     std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
 
 private:
+    Part& first() const;
     using Function = std::function<void(std::size_t)>;
     std::vector<std::size_t> run_all(const Function& work);
     std::vector<std::size_t> each(const Function& work);
@@ -72,7 +78,7 @@ private:
     std::vector<std::exception_ptr> errors_;
     std::vector<std::size_t> lost_;
     std::vector<std::string> warnings_;
-    std::unique_ptr<SideBySide> threads_; ///< null for one part
+    std::unique_ptr<SideBySide> threads_; ///< null for what was one part
 };
 
 } // namespace raycontact

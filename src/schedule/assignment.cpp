@@ -25,6 +25,16 @@ void Assignment::assign(std::span<const SlotPair> pairs, Balance& balance) {
     make_lists();
 }
 
+// One part alone needs no lists.
+void Assignment::add_part() {
+    if (lists_.size() == 1) {
+        open_.assign(pairs_.begin(), pairs_.end());
+        parts_.assign(pairs_.size(), 0);
+    }
+    lists_.emplace_back();
+    make_lists();
+}
+
 void Assignment::make_lists() {
     for (auto& list : lists_) list.clear();
     for (std::size_t i = 0; i < open_.size(); ++i) lists_[parts_[i]].push_back(open_[i]);

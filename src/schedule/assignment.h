@@ -14,6 +14,8 @@ namespace raycontact {
 class Assignment {
 public:
     explicit Assignment(std::size_t parts) : lists_(parts) {}
+    /// One more part, the last, without pairs. After an assign() of the same step.
+    void add_part();
 
     /// pairs: of a step, sorted, each once; valid until the next call. New pairs go where the load is least.
     void assign(std::span<const SlotPair> pairs, Balance& balance);

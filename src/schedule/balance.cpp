@@ -26,9 +26,9 @@ Balance::Balance(Schedule schedule, std::span<const double> costs) : schedule_(s
 
 std::size_t Balance::part_for_new_pair() {
     const auto later = [&](const Seat& seat) { return seat.cost * (seat.load + load_of_pair_); };
-    Seat* best = nullptr;
+    Seat* best = chosen_ ? &seats_[*chosen_] : nullptr;
     for (Seat& seat : seats_)
-        if (seat.there && (!best || later(seat) < later(*best))) best = &seat;
+        if (!chosen_ && seat.there && (!best || later(seat) < later(*best))) best = &seat;
     best->load += load_of_pair_;
     return static_cast<std::size_t>(best - seats_.data());
 }
@@ -64,11 +64,12 @@ double Balance::mean_time() const {
 
 void Balance::drop(std::size_t part) {
     seats_[part] = {.there = false};
+    if (chosen_ == part) chosen_.reset();
     uneven_steps_ = 0;
 }
 
 std::optional<Balance::Move> Balance::next_move() const {
-    if (schedule_ == Schedule::sticky || uneven_steps_ < steps_to_wait) return std::nullopt;
+    if (chosen_ || schedule_ == Schedule::sticky || uneven_steps_ < steps_to_wait) return std::nullopt;
     const Seat *from = nullptr, *to = nullptr;
     for (const Seat& seat : seats_) {
         if (!seat.there) continue;

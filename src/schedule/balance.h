@@ -19,7 +19,12 @@ public:
     /// costs: of a unit on each part, as far as is known before any step; only their ratios matter.
     Balance(Schedule schedule, std::span<const double> costs);
 
-    /// The part with the least load, which gets one pair more.
+    /// One more part, the last.
+    void add(double cost) { seats_.push_back({.cost = cost}); }
+    /// New pairs go to this part alone, and none moves by itself, until it is dropped.
+    void choose(std::size_t part) { chosen_ = part; }
+
+    /// The part with the least load, or the chosen one, which gets one pair more.
     std::size_t part_for_new_pair();
     /// What a part did in a step, by load_of() and by the clock.
     void record(std::size_t part, double load, double ms);
@@ -51,6 +56,7 @@ private:
 
     Schedule schedule_;
     std::vector<Seat> seats_;
+    std::optional<std::size_t> chosen_;
     double load_of_pair_ = 1; ///< mean of the last step
     double cost_of_move_ = 0; ///< milliseconds a unit of load
     unsigned uneven_steps_ = 0;

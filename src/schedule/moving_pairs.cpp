@@ -9,6 +9,7 @@
 namespace raycontact {
 
 MovingPairs choose_moving(std::span<const SlotPair> pairs, std::span<const Contact> contacts, double share) {
+    if (share >= 1) return {{pairs.begin(), pairs.end()}, 1};
     std::vector<std::uint64_t> weights(pairs.size(), 1); // in contacts, and one more
     std::unordered_map<BodySlot, std::uint64_t> weight_of_body;
     std::uint64_t all = 0;

@@ -36,7 +36,7 @@ void ShapeStore::add(const std::shared_ptr<const Shape>& shape) {
     }
     // Entered last: a shape too large for the device has no entry, and leaves at most unused elements in the arrays.
     Entry entry{shape, 0, 1};
-    upload(entry);
+    upload(entry, accelerators_of(*shape));
     order_.reserve(order_.size() + 1);
     plain_ += entries_.emplace(shape.get(), entry).first->second.plain ? 1 : 0;
     order_.push_back(shape.get());
@@ -61,16 +61,39 @@ bool ShapeStore::pack() {
         Entry& entry = entries_.at(shape);
         plain_ -= entry.plain ? 1 : 0;
         entry.plain = false;
-        upload(entry);
+        upload(entry, accelerators_of(*shape));
         plain_ += entry.plain ? 1 : 0;
     }
     whole_ = true;
     return true;
 }
 
-void ShapeStore::upload(Entry& entry) {
+// What was dropped there, or made of a shape since the last step, is taken as it is there: both pack and take over in
+// the same calls from now on.
+void ShapeStore::add_all_of(const ShapeStore& other) {
+    std::vector<const Entry*> entries(other.headers_.size(), nullptr);
+    for (const auto& [shape, entry] : other.entries_) entries[entry.index] = &entry;
+    for (const Entry* from : entries) {
+        if (from == nullptr) {
+            const kernels::ShapeHeader dropped{};
+            arrays_.headers.append(device_, std::span(&dropped, 1));
+            headers_.push_back(dropped);
+            continue;
+        }
+        Entry entry = *from;
+        upload(entry, from->plain ? nullptr : accelerators_of(*from->shape));
+        entry.bytes = from->bytes;
+        entries_.emplace(entry.shape.get(), entry);
+    }
+    order_ = other.order_;
+    bytes_used_ = other.bytes_used_;
+    bytes_dropped_ = other.bytes_dropped_;
+    plain_ = other.plain_;
+    whole_ = other.whole_;
+}
+
+void ShapeStore::upload(Entry& entry, const Accelerators* more) {
     const ShapeData& data = entry.shape->data();
-    const Accelerators* more = accelerators_of(*entry.shape);
     kernels::ShapeHeader header = more != nullptr ? more->header : data.header;
     if (!device_.traits().shares_memory) {
         static const std::vector<kernels::uint> none;

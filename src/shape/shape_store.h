@@ -25,6 +25,8 @@ public:
     explicit ShapeStore(Device& device) : device_(device) {}
 
     void add(const std::shared_ptr<const Shape>& shape);
+    /// The shapes of another store, each with the index and the users that it has there: for one that has none yet.
+    void add_all_of(const ShapeStore& other);
     void remove(const Shape* shape);
     /// Index of a shape in the arrays. Valid until the next add or pack.
     kernels::uint index_of(const Shape* shape) const { return entries_.at(shape).index; }
@@ -47,7 +49,7 @@ private:
         std::uint64_t bytes = 0; ///< of the shape, as far as it is here
         bool plain = false;      ///< without accelerators here
     };
-    void upload(Entry& entry);
+    void upload(Entry& entry, const Accelerators* more);
     void upload_accelerators(Entry& entry, const Accelerators& more);
     template <class... T>
     void copy(const std::pair<const std::vector<T>&, kernels::ulong&>&... arrays);

@@ -39,6 +39,7 @@ TEST_F(Run, HasItsKeys) {
                             "caster",
                             "direction",
                             "devices",
+                            "device_choice",
                             "schedule",
                             "hash",
                             "rays_cast",

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One hash of every scene, method and caster, whatever the device; and what a scene may hold little or nothing of.
+#include "device/turning.h"
 #include "device/work.h"
 #include "reference/meshes.h"
 #include "reference/random.h"
@@ -251,6 +252,16 @@ TEST(parts, of_different_devices_hand_pairs_over) {
         }
         EXPECT_GT(contacts, 100u);
     }
+}
+
+// Devices "auto": all pairs go to and fro.
+TEST(scenes, have_the_cpus_contacts_on_a_device_that_is_tried) {
+    for (const Method method : {Method::standard, Method::certified, Method::iterative, Method::predictive})
+        for (const Features features : {Features::vertices, Features::edges})
+            for (const bool speculative : {false, true})
+                device_test::expect_the_cpus_contacts(
+                    device_test::automatic(method, features, speculative),
+                    [] { return std::optional(open_device(tested_device(), 1)); }, 1);
 }
 
 // ---- little or nothing

@@ -82,6 +82,7 @@ void expect_none_after_warm_up(Features features, const std::shared_ptr<const Sh
                 Settings settings;
                 settings.features = features;
                 settings.method = method;
+                settings.execution.devices = "cpu"; // a trial of another allocates
                 settings.execution.threads = threads;
                 settings.direction = given ? Direction::weighted : Direction::reprojected;
                 Scene scene(settings);
@@ -123,6 +124,7 @@ TEST(Allocations, NoneForPairsThatReturn) {
     for (const Method method : methods) {
         Settings settings;
         settings.method = method;
+        settings.execution.devices = "cpu"; // a trial of another allocates
         settings.execution.threads = 1;
         Scene scene(settings);
         for (std::uint32_t body = 0; body < 64; ++body) scene.add(shape);
@@ -148,6 +150,7 @@ TEST(Allocations, NoneForPairsThatReturn) {
 TEST(Allocations, NoneForAMillionBodiesThatComeAndGo) {
     const auto shape = prepared_shape(scenes::scene_model("knot", 902).mesh);
     Settings settings;
+    settings.execution.devices = "cpu"; // a trial of another allocates
     settings.execution.threads = 1;
     Scene scene(settings);
     for (std::uint32_t body = 0; body < 8; ++body)
@@ -198,6 +201,7 @@ void expect_nothing_left(Features features, const std::shared_ptr<const Shape>& 
     for (const Method method : methods) {
         Settings settings;
         settings.method = method;
+        settings.execution.devices = "cpu"; // a trial of another allocates
         settings.execution.threads = 1;
         settings.features = features;
         settings.speculative = speculative;

@@ -105,7 +105,8 @@ class Scene:
         speculative: also contacts before anything touches, with depth <= 0, within `speculative_margin` metres (None:
             a four-hundredth of the smaller body's diagonal) or on the way to the next step.
         max_contacts_per_pair, max_contacts: keep those that stand for all; 0 keeps all.
-    How: devices ("auto", "all", or ids of `list_devices` with commas), threads (0: one per core), schedule
+    How: devices ("auto": the CPU or the first GPU, whichever is faster when both are tried, see `device_choice`;
+        "all": every GPU; or ids of `list_devices` with commas, which share the pairs), threads (0: one per core), schedule
         ("balanced", "sticky", "counted"), inexact (accept devices that round differently).
     The paper's own constants, for "iterative" and "predictive": caster, displacement_threshold, confidence,
         culling_distance, distance_extension, max_iterations, cast_lost_walks, skip_outside.
@@ -292,6 +293,15 @@ class Scene:
     def stats(self) -> StepStats:
         """What the last step did."""
         return self._core.stats
+
+    @property
+    def device_choice(self) -> str:
+        """Which device has the pairs, and why.
+
+        With devices="auto" as "cpu: 1.2 ms a step, cuda:0 3.41 ms, measured with 7650 pairs" (milliseconds of the
+        narrow phase); else as "cpu: as given".
+        """
+        return self._core.device_choice
 
     def raycast(self, origins: ArrayLike, directions: ArrayLike, max: float = np.inf) -> BodyRayHits:
         """The body that each ray meets first, poses set since the last step included.

@@ -220,6 +220,7 @@ void bind_scene(nb::module_& m) {
             "contacts", [](GuardedScene& guarded) { return bytes_of(guarded.enter()->shared_contacts()); },
             nb::rv_policy::automatic)
         .def("lost_contacts", &lost_contacts)
+        .def_prop_ro("device_choice", [](GuardedScene& guarded) { return guarded.enter()->device_choice(); })
         .def_prop_ro("stats", [](GuardedScene& guarded) { return guarded.enter()->stats(); })
         .def_prop_ro(
             "pairs", [](GuardedScene& guarded) { return pairs_array(guarded.enter()->pairs()); },
