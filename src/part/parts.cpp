@@ -19,8 +19,9 @@ std::size_t Parts::left() const {
     return parts_.size() - static_cast<std::size_t>(std::count(parts_.begin(), parts_.end(), nullptr));
 }
 
-Executor& Parts::executor() {
-    return (*std::ranges::find_if(parts_, [](const auto& part) { return part != nullptr; }))->executor();
+std::size_t Parts::first() const {
+    const auto any = std::ranges::find_if(parts_, [](const auto& part) { return part != nullptr; });
+    return static_cast<std::size_t>(any - parts_.begin());
 }
 
 void Parts::attempt(std::size_t number, const Function& work) {
@@ -80,8 +81,7 @@ void Parts::remove_shape(const Shape* shape) {
 
 // All stores have had the same calls, so a shape has the same index in each.
 kernels::uint Parts::index_of(const Shape* shape) const {
-    const auto any = std::ranges::find_if(parts_, [](const auto& part) { return part != nullptr; });
-    return (*any)->shapes().index_of(shape);
+    return parts_[first()]->shapes().index_of(shape);
 }
 
 bool Parts::pack_shapes() {
