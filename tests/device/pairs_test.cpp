@@ -2,6 +2,7 @@
 // The broad phase on every device of this machine, the CPU's included: the host's pairs, in the host's order.
 #include "box_changes.h"
 #include "device/counting.h"
+#include "device/launch.h"
 #include "prepared_shape.h"
 #include "reference/meshes.h"
 #include "reference/random.h"
@@ -9,7 +10,10 @@
 #include <raycontact/device.h>
 #include <raycontact/scene.h>
 
+#include <array>
+#include <bit>
 #include <cctype>
+#include <cmath>
 #include <functional>
 #include <gtest/gtest.h>
 #include <string>
@@ -153,6 +157,57 @@ std::size_t run(const std::string& device, std::uint32_t count, const Place& pla
 }
 
 class Devices : public testing::TestWithParam<std::string> {};
+
+std::array<std::uint64_t, 6> bits_of(const Vec3& low, const Vec3& high) {
+    return std::bit_cast<std::array<std::uint64_t, 6>>(std::array{low.x, low.y, low.z, high.x, high.y, high.z});
+}
+
+// Pairs alone would not tell the last bits.
+TEST_P(Devices, make_the_hosts_boxes) {
+    const OpenDevice opened = open_device(GetParam(), 1);
+    Device& device = *opened.device;
+    Random random(2);
+    for (const std::size_t places : {1, 2}) {
+        std::vector<kernels::BodyExtent> extents;
+        std::vector<kernels::BodyPlace> moved;
+        std::vector<Box> expected;
+        for (BodySlot slot = 0; slot < 5000; ++slot) {
+            const double scale = std::pow(10.0, random.uniform(-3, 9));
+            const Vec3 corner = random.in_ball(), size{random.uniform(0, 1), random.uniform(0, 1), 0};
+            const Box own{corner, corner + size};
+            const double growth = slot % 2 == 0 ? 0 : random.uniform(0, 0.1);
+            const Vec3 middle = own.middle(), half = 0.5 * (own.high - own.low) + Vec3{growth, growth, growth};
+            extents.push_back({{middle.x, middle.y, middle.z}, {half.x, half.y, half.z}, slot, 3, 1, slot});
+            Box box = no_box;
+            for (std::size_t k = 0; k < places; ++k) {
+                const Pose pose = slot % 7 == 0 ? Pose{} : pose_at(random, scale * random.in_ball());
+                moved.push_back(place_of(pose, 0, slot));
+                box.add(world_box(own, pose, growth));
+            }
+            expected.push_back(box);
+        }
+        Array<kernels::BodyExtent> sent, on_device;
+        Array<kernels::BodyPlace> poses;
+        Array<kernels::WorldBox> boxes;
+        sent.write(device, extents);
+        poses.write(device, moved);
+        on_device.resize(device, extents.size());
+        boxes.resize(device, extents.size());
+        launch<KernelId::set_extents>(device, extents.size(), sent, on_device);
+        launch<KernelId::make_boxes>(device, extents.size(), static_cast<kernels::uint>(places), poses, on_device,
+                                     boxes);
+        std::vector<kernels::WorldBox> found(extents.size());
+        boxes.read(device, found);
+        for (BodySlot slot = 0; slot < found.size(); ++slot) {
+            const auto& [low, high, groups, mask] = found[slot];
+            ASSERT_EQ(bits_of({low[0], low[1], low[2]}, {high[0], high[1], high[2]}),
+                      bits_of(expected[slot].low, expected[slot].high))
+                << slot;
+            ASSERT_EQ(groups, slot);
+            ASSERT_EQ(mask, 3u);
+        }
+    }
+}
 
 TEST_P(Devices, find_the_hosts_pairs) {
     Random random(3);
