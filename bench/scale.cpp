@@ -14,6 +14,7 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -23,6 +24,7 @@ namespace {
 
 struct Size {
     std::uint32_t bodies = 100'000, steps = 21, threads = 0;
+    std::string devices = "cpu";
 };
 
 class Grid {
@@ -86,7 +88,7 @@ private:
     static Settings settings(const Size& size) {
         Settings made;
         made.execution.threads = size.threads;
-        made.execution.devices = "cpu";
+        made.execution.devices = size.devices;
         return made;
     }
 
@@ -118,6 +120,8 @@ void add_scale(CLI::App& app) {
     add_number(*command, "--bodies", size->bodies, "on a grid", 1u, 10'000'000u);
     add_number(*command, "--steps", size->steps, "of each kind; figures are medians", 1u, 100'000u);
     add_number(*command, "--threads", size->threads, "0: one per core", 0u, 1024u);
+    command->add_option("--devices", size->devices, "as a scene's; one that is no CPU finds the pairs, too")
+        ->type_name("LIST");
     command->callback([size] { measure(*size); });
 }
 

@@ -2,6 +2,7 @@
 #include <raycontact/scene.h>
 
 #include "body_slots.h"
+#include "box_changes.h"
 #include "broadphase/broad_phase.h"
 #include "contacts/columns.h"
 #include "contacts/predictions.h"
@@ -96,11 +97,19 @@ struct Scene::State {
 
     void mark(BodySlot slot) noexcept {
         moved.mark(slot);
+        mark_box(slot);
+    }
+    void mark_box(BodySlot slot) noexcept {
         world.mark(slot);
+        box_changes.mark(slot);
     }
     void forget_moves() noexcept {
         moved.forget();
+        forget_boxes();
+    }
+    void forget_boxes() noexcept {
         world.forget();
+        box_changes.forget();
     }
 
     void pack_shapes() {
@@ -155,15 +164,39 @@ struct Scene::State {
     }
 
     void find_pairs() {
+        if (!find_pairs_on_device()) find_pairs_on_host();
+        pairs_stand = true;
+    }
+
+    void find_pairs_on_host() {
         Executor& executor = narrow.parts().executor();
         world.update(executor, bodies, next, narrow.settings());
         const BroadPhaseInput input{world.boxes(), filters};
-        const bool stood = std::exchange(pairs_found, false) && !world.is_resized();
+        const bool stood = std::exchange(found_by, Finder::none) == Finder::host && !world.is_resized();
         pairs_stand = false; // until the lists are whole again
         if (!stood) broad_phase.find(executor, world.tree(), input, slot_pairs);
         if (!stood || broad_phase.update(executor, world.tree(), input, world.changed(), slot_pairs)) name_pairs();
         world.accept();
-        pairs_stand = pairs_found = true;
+        found_by = Finder::host;
+    }
+
+    /// By the first that is left; false: it is not one that can. Of one that fails, the next goes on.
+    bool find_pairs_on_device() {
+        Parts& parts = narrow.parts();
+        for (;;) {
+            const std::size_t first = parts.first();
+            if (!parts[first].can_find_pairs()) return false;
+            const DeviceBroadPhase::Changes changes = box_changes.list(parts.executor(), bodies, next, filters, world,
+                                                                       narrow.settings(), parts[first].known_slots());
+            const bool stood = std::exchange(found_by, Finder::none) == Finder::device;
+            pairs_stand = false; // until the lists are whole again
+            bool others = false;
+            const auto find = [&] { others = parts[first].find_pairs(changes, slot_pairs); };
+            if (!(stood && changes.moved.empty()) && !parts.before_step(first, find)) continue;
+            if (!stood || others) name_pairs();
+            found_by = Finder::device;
+            return true;
+        }
     }
 
     /// For queries between two steps, of which several may run at once.
@@ -207,7 +240,8 @@ struct Scene::State {
         }
         given_pairs.erase(std::unique(given_pairs.begin(), given_pairs.end()), given_pairs.end());
         if (pairs_stand && given_pairs == slot_pairs) return;
-        pairs_stand = pairs_found = false;
+        pairs_stand = false;
+        found_by = Finder::none;
         slot_pairs.swap(given_pairs);
         name_pairs();
         pairs_stand = true;
@@ -236,7 +270,7 @@ struct Scene::State {
             narrow.parts().forget(); // slots may get other bodies before the next step
             forget_moves();
             broad_phase.trim();
-            pairs_found = false;
+            found_by = Finder::none;
             contacts = own;
             contacts->clear();
             throw;
@@ -249,8 +283,8 @@ struct Scene::State {
         if (!narrow.settings().is_speculative()) return;
         const MovedBodies::Seen now = moved.now();
         next = next_poses.update(narrow.parts().executor(), bodies, moved);
-        if (moved.now() != now) world.forget();
-        for (const BodySlot slot : moved.list()) world.mark(slot);
+        if (moved.now() != now) forget_boxes();
+        for (const BodySlot slot : moved.list()) mark_box(slot);
     }
 
     void end_step() {
@@ -309,6 +343,7 @@ struct Scene::State {
         filters.shrink_to_fit();
         moved.cut(slots.end());
         world.cut(slots.end());
+        box_changes.cut(slots.end());
     }
 
     NarrowPhase narrow;
@@ -324,6 +359,7 @@ struct Scene::State {
     std::span<const Pose> next; ///< of the last step; empty without speculative contacts
     WorldBoxes world;
     std::mutex refreshing; ///< world
+    BoxChanges box_changes;
     BroadPhase broad_phase;
     std::vector<Pair> pairs, last_pairs;       ///< last_pairs: of the last step whose pairs were others
     std::vector<SlotPair> slot_pairs;          ///< `pairs` by slot
@@ -337,8 +373,9 @@ struct Scene::State {
     std::uint64_t steps_met = 0;
     bool pairs_changed = false; ///< since the last step
     bool pairs_stand = false;   ///< both lists are whole, and no body has been removed since
-    bool pairs_found = false;   ///< they are those of `world`, by the filters as they are
-    Preparer preparer;          ///< last: it ends first
+    /// Who found them, by the filters as they are: the host those of `world`, a device those of `box_changes`.
+    enum class Finder : std::uint8_t { none, host, device } found_by = Finder::none;
+    Preparer preparer; ///< last: it ends first
 };
 
 Scene::Scene(const Settings& settings) {
@@ -362,6 +399,7 @@ BodyId Scene::add(std::shared_ptr<const Shape> shape, const Pose& pose) {
     }
     s.moved.make_room(slot + std::size_t{1});
     s.world.make_room(slot + std::size_t{1});
+    s.box_changes.make_room(slot + std::size_t{1});
     s.pack_shapes(); // without a step in between they would pile up
     s.narrow.parts().add_shape(shape);
     s.user_data[slot] = 0;
@@ -467,7 +505,8 @@ void Scene::set_filter(BodyId body, std::uint32_t groups, std::uint32_t mask) {
     state_->existing(body, "Scene::set_filter");
     const BroadPhaseInput::Filter filter{groups, mask};
     if (std::exchange(state_->filters[body.slot], filter) == filter) return;
-    state_->pairs_found = false;
+    state_->found_by = State::Finder::none;
+    state_->box_changes.mark(body.slot);
 }
 
 bool Scene::has(BodyId body) const noexcept {

@@ -32,22 +32,26 @@ void WorldBoxes::measure_reach(std::span<const PlacedBody> bodies) {
     reach_known_ = true;
 }
 
-Box WorldBoxes::box_of(const PlacedBody& body, const Pose* next, const Settings& settings) const {
-    if (body.shape == nullptr) return no_box;
-    const Shape& shape = *body.shape;
-    const double far = shape.has_inside() ? 0 : double(reach_);
+double WorldBoxes::growth(const PlacedBody& body, bool looks_ahead, const Settings& settings) const {
+    const double far = body.shape->has_inside() ? 0 : double(reach_);
     // What two boxes are wider by is at least the margin of their pair.
     const double share = body.margin >= 0 ? 1 : 0.5;
-    const double near = next == nullptr ? 0 : share * speculative_margin(settings, body, body);
-    const Box own{shape.box_min(), shape.box_max()};
-    Box box = world_box(own, body.pose, far + near);
-    if (next != nullptr) box.add(world_box(own, *next, far + near));
+    const double near = looks_ahead ? share * speculative_margin(settings, body, body) : 0;
+    return far + near;
+}
+
+Box WorldBoxes::box_of(const PlacedBody& body, const Pose* next, const Settings& settings) const {
+    if (body.shape == nullptr) return no_box;
+    const Box own{body.shape->box_min(), body.shape->box_max()};
+    const double grow = growth(body, next != nullptr, settings);
+    Box box = world_box(own, body.pose, grow);
+    if (next != nullptr) box.add(world_box(own, *next, grow));
     return box;
 }
 
 void WorldBoxes::update(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pose> next,
                         const Settings& settings) {
-    if (!reach_known_) measure_reach(bodies);
+    reach(bodies);
     try {
         remake(executor, bodies, next, settings);
     } catch (...) {

@@ -26,6 +26,14 @@ public:
     /// next: where bodies are expected, whose boxes then hold the way there; empty: nowhere. Both by slot.
     void update(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pose> next,
                 const Settings& settings);
+    /// The longest ray of all bodies, metres.
+    float reach(std::span<const PlacedBody> bodies) {
+        if (!reach_known_) measure_reach(bodies);
+        return reach_;
+    }
+    /// By how much a body's box is widened on every side, metres; after reach(). looks_ahead: the body is expected
+    /// somewhere.
+    double growth(const PlacedBody& body, bool looks_ahead, const Settings& settings) const;
     /// Whether an update() would change nothing.
     bool is_up_to_date() const { return reach_known_ && moved_.is_next(seen_) && moved_.list().empty(); }
 

@@ -16,9 +16,11 @@ constexpr std::uint64_t moves = 16;
 // Where more boxes than this share have changed, to fill the tree takes less than to follow them.
 constexpr std::size_t few = 4;
 
+// A box that reaches beyond all floats ends at the last one: else it would touch lanes without a box.
 float below(double x) {
     const auto rounded = static_cast<float>(x);
-    return double(rounded) <= x ? rounded : std::nextafter(rounded, -unbounded);
+    const float least = double(rounded) <= x ? rounded : std::nextafter(rounded, -unbounded);
+    return std::max(least, std::numeric_limits<float>::lowest());
 }
 float above(double x) {
     return -below(-x);

@@ -9,6 +9,7 @@
 #include "kernels/traverse_group.h"
 #include "kernels/vertex_lanes.h"
 #include "kernels/place_pairs.h"
+#include "kernels/find_pairs.h"
 #include "kernels/clearance.h"
 #include "kernels/find_clusters.h"
 #include "kernels/find_vertices.h"

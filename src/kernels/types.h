@@ -126,11 +126,27 @@ WIRE_SIZE(ShapeHeader, 288);
 
 #include "kernels/body_place.h"
 
+#include "kernels/body_box.h"
+
 // The bodies of a pair; NONE: the slot has no pair.
 STRUCT(PairBodies) {
     uint first, second;
 };
 WIRE_SIZE(PairBodies, 8);
+
+// A body's place along a curve, and its slot.
+STRUCT(SortKey) {
+    uint key;
+    uint slot;
+};
+WIRE_SIZE(SortKey, 8);
+
+// Sixteen boxes of bodies in the world, or of nodes of the level below, rounded outward: bounds as a Node's. Empty
+// lanes have inverted boxes.
+STRUCT_OF_ROWS(BoxNode) {
+    float bounds[6][NODE_LANES];
+};
+WIRE_SIZE(BoxNode, 384);
 
 STRUCT(PairChange) {
     uint slot;

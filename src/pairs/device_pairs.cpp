@@ -16,13 +16,6 @@ namespace {
 // Bits, not values: 0 and -0 are one place, but not one contact.
 using PlaceBits = std::array<std::uint64_t, 13>;
 
-kernels::BodyPlace place_of(const PlacedBody& body, const Pose& pose, kernels::uint slot) {
-    const Vec3& t = pose.translation;
-    kernels::BodyPlace place{{}, {t.x, t.y, t.z}, body.shape_index, slot};
-    std::ranges::copy(pose.rotation, place.rotation);
-    return place;
-}
-
 } // namespace
 
 void DevicePairs::list_moved(const Update& update, Pose PlacedBody::*pose, Placing& at) {
@@ -30,7 +23,7 @@ void DevicePairs::list_moved(const Update& update, Pose PlacedBody::*pose, Placi
     at.sent.resize(update.bodies.size(), {{}, {}, NONE, 0}); // no shape: this body was never sent
     update.moved.each_since(at.seen, update.bodies.size(), [&](BodySlot i) {
         if (update.bodies[i].shape == nullptr) return;
-        const kernels::BodyPlace now = place_of(update.bodies[i], update.bodies[i].*pose, i);
+        const kernels::BodyPlace now = place_of(update.bodies[i].*pose, update.bodies[i].shape_index, i);
         if (std::bit_cast<PlaceBits>(now) == std::bit_cast<PlaceBits>(at.sent[i])) return;
         at.moved.push_back(at.sent[i] = now);
     });

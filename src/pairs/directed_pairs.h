@@ -36,6 +36,14 @@ inline bool same_bits(const Pose& p, const Pose& q) {
     return bits(p) == bits(q);
 }
 
+/// As a device has it.
+inline kernels::BodyPlace place_of(const Pose& pose, kernels::uint shape, BodySlot slot) {
+    const Vec3& t = pose.translation;
+    kernels::BodyPlace place{{}, {t.x, t.y, t.z}, shape, slot};
+    std::ranges::copy(pose.rotation, place.rotation);
+    return place;
+}
+
 /// The pose of the frame about the shape's centre.
 inline Pose centred_pose(const Shape& shape, const Pose& pose) {
     return {pose.rotation, transform_point(pose, shape.centre())};

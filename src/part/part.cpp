@@ -23,7 +23,7 @@ Part::Part(OpenDevice opened)
 
 void Part::trim() {
     pipeline_.trim();
-    free_all(placer_, edges_, last_, merged_, stays_, ends_);
+    free_all(broad_phase_, placer_, edges_, last_, merged_, stays_, ends_);
     has_last_ = false;
 }
 

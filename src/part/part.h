@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "broadphase/device_broad_phase.h"
 #include "contacts/place.h"
 #include "device/counting.h"
 #include "edges/edge_stage.h"
@@ -20,6 +21,14 @@ public:
     const DeviceInfo& device() const { return device_->info(); }
     Executor& executor() { return *executor_; }
     ShapeStore& shapes() { return shapes_; }
+
+    /// Whether its device can find the pairs of a scene, and has not the host's memory, where the host would as soon.
+    bool can_find_pairs() const { return device_->traits().has_double && !device_->traits().shares_memory; }
+    /// As DeviceBroadPhase; before begin().
+    std::size_t known_slots() const { return broad_phase_.slots(); }
+    bool find_pairs(const DeviceBroadPhase::Changes& changes, std::vector<SlotPair>& pairs) {
+        return broad_phase_.find(*device_, changes, pairs);
+    }
 
     /// Starts a step. bodies: of the scene, by slot. pairs: the part's, sorted, each once. All stay valid until the
     /// next begin(). A part that goes on without pairs asks nothing of its device.
@@ -58,6 +67,7 @@ private:
     std::unique_ptr<Executor> executor_;
     std::unique_ptr<CountingDevice> device_;
     ShapeStore shapes_;
+    DeviceBroadPhase broad_phase_;
     Motion motion_;
     Pipeline pipeline_;
     Placer placer_;

@@ -13,7 +13,7 @@ Parts::Parts(std::vector<OpenDevice> opened) {
 void Parts::add(OpenDevice opened) {
     std::string id = opened.device->info().id;
     auto part = std::make_unique<Part>(std::move(opened));
-    if (left() > 0) part->shapes().add_all_of(first().shapes());
+    if (left() > 0) part->shapes().add_all_of(parts_[first()]->shapes());
     devices_.push_back(std::move(id));
     faults_.emplace_back();
     errors_.emplace_back();
@@ -24,12 +24,9 @@ std::size_t Parts::left() const {
     return parts_.size() - static_cast<std::size_t>(std::count(parts_.begin(), parts_.end(), nullptr));
 }
 
-Part& Parts::first() const {
-    return **std::ranges::find_if(parts_, [](const auto& part) { return part != nullptr; });
-}
-
-Executor& Parts::executor() {
-    return first().executor();
+std::size_t Parts::first() const {
+    const auto any = std::ranges::find_if(parts_, [](const auto& part) { return part != nullptr; });
+    return static_cast<std::size_t>(any - parts_.begin());
 }
 
 void Parts::attempt(std::size_t number, const Function& work) {
@@ -89,7 +86,7 @@ void Parts::remove_shape(const Shape* shape) {
 
 // All stores have had the same calls, so a shape has the same index in each.
 kernels::uint Parts::index_of(const Shape* shape) const {
-    return first().shapes().index_of(shape);
+    return parts_[first()]->shapes().index_of(shape);
 }
 
 bool Parts::pack_shapes() {

@@ -24,8 +24,10 @@ public:
     bool has(std::size_t number) const { return parts_[number] != nullptr; }
     std::size_t left() const;
     Part& operator[](std::size_t number) { return *parts_[number]; }
-    /// Of the first that is left: for work on the host.
-    Executor& executor();
+    /// The first that is left.
+    std::size_t first() const;
+    /// Its threads, for work on the host.
+    Executor& executor() { return parts_[first()]->executor(); }
     const std::string& device(std::size_t number) const { return devices_[number]; }
 
     /// Calls work(number) for every part that is left, each on a thread of its own unless it was added. Returns those
@@ -39,6 +41,14 @@ public:
     std::vector<std::size_t> only(std::size_t number, Work&& work) {
         attempt(number, [&](std::size_t) { work(); });
         return drop_failed();
+    }
+
+    /// The same before a step, which then hears of it by take_lost(). Returns whether the part is left.
+    template <class Work>
+    bool before_step(std::size_t number, Work&& work) {
+        const auto failed = only(number, work);
+        lost_.insert(lost_.end(), failed.begin(), failed.end());
+        return failed.empty();
     }
 
     void add_shape(const std::shared_ptr<const Shape>& shape);
@@ -58,13 +68,12 @@ public:
     void warn(std::string text) { warnings_.push_back(std::move(text)); }
     /// Whether take_lost() or take_warnings() has something to tell.
     bool has_news() const { return !lost_.empty() || !warnings_.empty(); }
-    /// Those dropped by add_shape() and pack_shapes() since the last call.
+    /// Those dropped by add_shape(), pack_shapes() and before_step() since the last call.
     std::vector<std::size_t> take_lost() { return std::exchange(lost_, {}); }
     /// What was dropped since the last call, and why; for the user.
     std::vector<std::string> take_warnings() { return std::exchange(warnings_, {}); }
 
 private:
-    Part& first() const;
     using Function = std::function<void(std::size_t)>;
     std::vector<std::size_t> run_all(const Function& work);
     std::vector<std::size_t> each(const Function& work);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "device/results.h"
 #include "pairs/by_pair.h"
 #include "pairs/near_edges.h"
-#include "pairs/results.h"
 #include "rays/certified.h"
 #include "rays/coherent.h"
 #include "rays/near_rays.h"

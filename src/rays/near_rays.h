@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pairs/results.h"
+#include "device/results.h"
 #include "rays/block_search.h"
 #include "rays/ray_batch.h"
 

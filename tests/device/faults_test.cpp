@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Several devices, of which some fail: at each call of a step, in each way. The step's contacts are complete, and those
 // after it, too.
+#include "box_changes.h"
 #include "device/fake.h"
 #include "device/moving_crowd.h"
 #include "narrow_phase.h"
@@ -230,6 +231,64 @@ TEST(Faults, WithNoDeviceLeftTheStepFailsAndTheNextBeginsAnew) {
         }
         EXPECT_GT(rig.contacts.size(), 50u);
     }
+}
+
+// The broad phase of a scene: each call of its second step fails, on one device of two, or on the only one.
+TEST(Faults, InFindingPairs) {
+    for (const std::size_t devices : {2, 1})
+        for (const Fault fault : {Fault::once, Fault::lost, Fault::watchdog}) {
+            bool failed = true;
+            for (std::size_t at = 0; failed && !HasFailure(); ++at) {
+                MovingCrowd crowd(200, 3.0);
+                Rig rig(crowd, Method::standard, devices, false);
+                Parts& parts = rig.narrow.parts();
+                WorldBoxes world;
+                BoxChanges changes;
+                changes.make_room(200);
+                const std::vector<BroadPhaseInput::Filter> filters(200);
+                std::vector<SlotPair> pairs, expected;
+                // As a scene finds them.
+                const auto find = [&] {
+                    for (bool found = false; !found;) {
+                        Part& part = parts[parts.first()];
+                        ASSERT_TRUE(part.can_find_pairs());
+                        const auto told = changes.list(parts.executor(), crowd.bodies, {}, filters, world,
+                                                       rig.narrow.settings(), part.known_slots());
+                        found = parts.before_step(parts.first(), [&] { part.find_pairs(told, pairs); });
+                    }
+                };
+                const auto expect = [&] {
+                    world.forget();
+                    world.update(parts.executor(), crowd.bodies, {}, rig.narrow.settings());
+                    BroadPhase().find(parts.executor(), world.tree(), {world.boxes(), filters}, expected);
+                    EXPECT_TRUE(pairs == expected) << devices << " devices, call " << at;
+                    EXPECT_GT(pairs.size(), 200u);
+                };
+                find();
+                expect();
+                crowd.move();
+                for (BodySlot i = 0; i < 200; ++i) changes.mark(i);
+                rig.scripts[0]->start(fault, at);
+                if (devices == 1) {
+                    try {
+                        find();
+                    } catch (const DeviceError&) {
+                    }
+                    failed = rig.scripts[0]->failed > 0;
+                    rig.scripts[0]->start(Fault::none, 0);
+                    find();
+                } else {
+                    find();
+                    failed = rig.scripts[0]->failed > 0;
+                    EXPECT_EQ(parts.has_news(), failed);
+                    EXPECT_EQ(parts.left(), failed ? 1u : 2u);
+                }
+                expect();
+                rig.step(crowd, pairs);
+                EXPECT_EQ(rig.stats.devices_lost, failed && devices == 2 ? 1u : 0u);
+                EXPECT_TRUE(failed || at > 5);
+            }
+        }
 }
 
 // A shape that a device has no room for.

@@ -12,11 +12,12 @@ namespace {
 
 constexpr std::string_view rounding[] = {"add.rn.f32", "sub.rn.f32",  "mul.rn.f32",     "div.rn.f32",
                                          "rcp.rn.f32", "sqrt.rn.f32", "cvt.rn.f32.u32", "cvt.rn.f32.s32"};
-// What places pairs.
+// What finds pairs and places them.
 constexpr std::string_view rounding_double[] = {"add.rn.f64", "sub.rn.f64", "mul.rn.f64", "cvt.rn.f32.f64"};
 // Move, compare, choose, cut off: no rounding. min and max ignore a NaN, as `a < b ? a : b` does with a constant b.
-constexpr std::string_view exact[] = {"neg.f32", "abs.f32",  "min.f32",         "max.f32",        "mov.f32",
-                                      "mov.f64", "selp.f32", "cvt.rzi.s32.f32", "cvt.rzi.u32.f32"};
+constexpr std::string_view exact[] = {"neg.f32", "abs.f32",  "min.f32",         "max.f32",         "mov.f32",
+                                      "mov.f64", "selp.f32", "cvt.rzi.s32.f32", "cvt.rzi.u32.f32", "neg.f64",
+                                      "min.f64", "max.f64",  "selp.f64",        "cvt.f64.f32"};
 constexpr std::string_view exact_families[] = {"setp.", "set.", "ld.", "st."};
 
 bool contains(std::span<const std::string_view> list, std::string_view word) {

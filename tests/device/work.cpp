@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "device/work.h"
 
+#include "box_changes.h"
 #include "device/cpu/device.h"
 #include "part/part.h"
 #include "prepared_shape.h"
@@ -21,6 +22,16 @@ void place(Work& work, std::size_t shape, const Pose& pose) {
     PlacedBody& body = work.bodies.emplace_back();
     body.shape = work.shapes[shape].get();
     body.pose = pose;
+}
+
+// All bodies, as new ones: the scene's broad phase, on the part's device.
+void find_pairs(Part& part, const std::vector<PlacedBody>& bodies) {
+    BoxChanges changes;
+    WorldBoxes world;
+    Executor executor(1);
+    std::vector<SlotPair> pairs;
+    const std::vector<BroadPhaseInput::Filter> filters(bodies.size());
+    part.find_pairs(changes.list(executor, bodies, {}, filters, world, {}, part.known_slots()), pairs);
 }
 
 void place_centres(std::vector<PlacedBody>& bodies) {
@@ -44,6 +55,7 @@ Outcome run_part(Part& part, const Work& work, const std::vector<Way>& ways) {
             for (std::size_t i = 0; i < bodies.size(); i += 2) bodies[i].pose.translation.x += by;
             place_centres(bodies);
             moved.forget();
+            if (way.method == Method::standard) find_pairs(part, bodies);
             part.begin(bodies, moved, work.pairs, settings);
             std::vector<Contact> found;
             part.end(found);

@@ -88,6 +88,8 @@ kernels::uint grain_of(KernelId kernel) {
     case KernelId::follow_rays_bvh:
         return 128;
     case KernelId::test_candidates:
+    case KernelId::count_digits:
+    case KernelId::move_keys:
         return 16;
     case KernelId::count_clusters:
     case KernelId::write_clusters:
@@ -95,7 +97,12 @@ kernels::uint grain_of(KernelId kernel) {
     case KernelId::count_rays:
     case KernelId::count_edges:
     case KernelId::count_near_rays:
+    case KernelId::fill_nodes:
+    case KernelId::count_partners:
+    case KernelId::write_partners:
         return 64;
+    case KernelId::make_boxes:
+    case KernelId::make_keys:
     case KernelId::place_pairs:
     case KernelId::write_contacts:
     case KernelId::find_margins:

@@ -8,8 +8,7 @@ namespace raycontact::opencl {
 namespace {
 
 bool is_built(KernelId id, bool has_double) {
-    const bool in_double = id == KernelId::apply_changes || id == KernelId::place_pairs;
-    return gpu::name_of(id) && (has_double || !in_double);
+    return gpu::name_of(id) && (has_double || !gpu::is_in_double(id));
 }
 
 bool claims_double(cl_device_id device) {

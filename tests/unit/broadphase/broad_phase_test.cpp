@@ -132,6 +132,18 @@ TEST(BroadPhase, OneBoxOrNoneHasNoPair) {
     EXPECT_FALSE(broad_phase.update(executor, {boxes, {}}, {}, pairs));
 }
 
+// They touch no lane without a box.
+TEST(BroadPhase, BoxesMayReachBeyondAllFloats) {
+    std::vector<Box> boxes(19, {{0, 0, 0}, {1, 1, 1}});
+    boxes[3] = {{-1e45, -1e45, 1e60}, {1e45, 1e45, 1e61}};
+    boxes[5] = {{-1e45, -1e45, -1e45}, {1e45, 1e45, 1e45}};
+    boxes[7] = no_box;
+    std::vector<SlotPair> pairs;
+    Executor executor(1);
+    Finder().find(executor, {boxes, {}}, pairs);
+    EXPECT_EQ(pairs, all_pairs(boxes));
+}
+
 TEST(WorldBox, HoldsTheTurnedBox) {
     std::mt19937 random(6);
     std::uniform_real_distribution<double> any(-1, 1);

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "device/results.h"
+#include "device/scan.h"
+#include "slot_pair.h"
+
+#include <array>
+#include <span>
+#include <vector>
+
+namespace raycontact {
+
+/// Finds on a device the pairs that BroadPhase finds on the host, in the same order. It keeps the boxes of bodies and
+/// is told of changes alone. Each body walks down the tree: unlike a node of bodies, it needs no shared memory, and
+/// there are as many walks as a GPU wants.
+class DeviceBroadPhase {
+public:
+    /// What the device does not know yet.
+    struct Changes {
+        std::size_t slots = 0;  ///< of bodies; where it is not slots(), all are listed
+        std::size_t places = 1; ///< of a body: its box holds them all
+        std::span<const kernels::BodyExtent> extents;
+        std::span<const kernels::BodyPlace>
+            moved; ///< body frames: `places` of each body that moved or whose extent is new
+    };
+
+    /// Those that the device knows: none before the first find(), and after one that failed.
+    std::size_t slots() const { return boxes_.size(); }
+    /// The device has double. pairs: become all of those whose boxes touch, and which no filter keeps apart, sorted.
+    /// Returns whether they were others before.
+    bool find(Device& device, const Changes& changes, std::vector<SlotPair>& pairs);
+
+private:
+    void tell(Device& device, const Changes& changes);
+    void fill(Device& device);
+    void sort(Device& device);
+    void search(Device& device);
+    bool read(Device& device);
+    void list_wide(Device& device);
+    bool take(std::vector<SlotPair>& pairs);
+
+    Array<kernels::BodyExtent> extents_, changed_; ///< by slot; those to set
+    Array<kernels::BodyPlace> moved_;
+    Array<kernels::WorldBox> boxes_; ///< by slot
+    kernels::uint levels_ = 0;       ///< of the tree
+    Array<kernels::BoxNode> tree_;
+    Array<kernels::SortKey> order_, keys_; ///< order_: slots along the curve
+    Columns digits_, counts_;
+    Array<kernels::uint> is_wide_, wide_; ///< by slot: near so many bodies that it is tested against all; their slots
+    Array<kernels::Totals> totals_;
+    Results<kernels::PairBodies> found_;
+    std::vector<kernels::uint> host_wide_, wide_slots_;
+    std::vector<kernels::SortKey> host_order_;
+    std::vector<SlotPair> next_;
+    double tests_ = 0, tests_when_sorted_ = 0; ///< of nodes, in the last search
+    bool sorts_next_ = true;
+};
+
+} // namespace raycontact

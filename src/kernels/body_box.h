@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+// Not in types.h, as body_place.h. What the broad phase knows of a body, in double.
+
+// Its box in its own frame, already grown, and its filter. there 0: the slot has no body.
+STRUCT(BodyExtent) {
+    double middle[3], half_size[3];
+    uint groups, mask;
+    uint there;
+    uint slot;
+};
+WIRE_SIZE(BodyExtent, 64);
+
+// Its box in the world. Of a slot without a body: a box that touches nothing.
+STRUCT(WorldBox) {
+    double low[3], high[3];
+    uint groups, mask;
+};
+WIRE_SIZE(WorldBox, 56);
