@@ -27,6 +27,8 @@ public:
     DeviceChoice* choice() { return choice_ ? &*choice_ : nullptr; }
     /// As Scene's.
     std::string device_choice() const;
+    /// The part that has all pairs, or the first that is left.
+    std::size_t first_part() const { return choice_ && parts_.has(in_use_) ? in_use_ : parts_.first(); }
     /// Begins to wake the threads that the next step will need.
     void wake();
     /// Forgets what the last method kept.

@@ -180,11 +180,11 @@ struct Scene::State {
         found_by = Finder::host;
     }
 
-    /// By the first that is left; false: it is not one that can. Of one that fails, the next goes on.
+    /// False: the part that would is not one that can. Where one fails, the next goes on.
     bool find_pairs_on_device() {
         Parts& parts = narrow.parts();
         for (;;) {
-            const std::size_t first = parts.first();
+            const std::size_t first = narrow.first_part();
             if (!parts[first].can_find_pairs()) return false;
             const DeviceBroadPhase::Changes changes = box_changes.list(parts.executor(), bodies, next, filters, world,
                                                                        narrow.settings(), parts[first].known_slots());
