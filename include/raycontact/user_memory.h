@@ -11,9 +11,9 @@
 
 namespace raycontact {
 
-/// A stretch of memory that belongs to the caller, in the host's memory or a device's: Scene::set_poses() reads it,
-/// Scene::write_contacts() writes it. Whatever device the scene works on. Cheap to copy; it must outlive no call, but
-/// the caller keeps the memory until then.
+/// A stretch of memory that belongs to the caller, of the host or of a device: Scene::set_poses() reads it,
+/// Scene::write_contacts() writes it, whatever device the scene works on. Cheap to copy. The caller keeps the memory
+/// for as long as it is used.
 class RAYCONTACT_API UserMemory {
 public:
     static UserMemory host(std::span<std::byte> bytes);
@@ -49,7 +49,7 @@ private:
 enum class PoseForm {
     matrix_4x4,    ///< 16 numbers, row-major, the translation in the last column
     matrix_3x4,    ///< its first three rows, 12 numbers
-    position_wxyz, ///< 7 numbers: translation, unit quaternion with the real part first (MuJoCo, Newton's USD)
+    position_wxyz, ///< 7 numbers: translation, unit quaternion with the real part first (MuJoCo)
     position_xyzw, ///< 7 numbers: the real part last (Warp, PhysX, Bullet, ROS)
 };
 
