@@ -174,5 +174,59 @@ TEST(WorldBox, HoldsTheCornersOfTheWidenedBox) {
     }
 }
 
+TEST(PairSorter, SortsListsInAnyOrder) {
+    std::mt19937 random(9);
+    for (const std::uint32_t threads : {1u, 3u}) {
+        Executor executor(threads);
+        PairSorter sorter;
+        for (const std::size_t count : {0u, 1u, 200u, 60000u}) {
+            constexpr BodySlot bodies = 700;
+            std::uniform_int_distribution<BodySlot> body(0, bodies - 1);
+            std::vector<SlotPair> pairs, expected, sorted;
+            for (std::size_t i = 0; i < count; ++i) pairs.push_back(std::minmax(body(random), body(random)));
+            expected = pairs;
+            std::sort(expected.begin(), expected.end());
+            sorter.run(executor, bodies, pairs, sorted);
+            EXPECT_EQ(sorted, expected);
+            const std::span<const SlotPair> all(pairs);
+            const std::array lists{all.first(count / 3), all.subspan(count / 3)};
+            sorter.run(executor, bodies, lists, sorted);
+            EXPECT_EQ(sorted, expected);
+        }
+    }
+}
+
+// Many slices of the list, some without a change.
+TEST(BroadPhase, PutsWhatChangedIntoALongList) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> place(0, 30), step(-0.5, 0.5);
+    constexpr BodySlot count = 4000;
+    std::vector<Box> boxes;
+    for (BodySlot body = 0; body < count; ++body) {
+        const Vec3 low{place(random), place(random), 0};
+        boxes.push_back({low, {low.x + 2, low.y + 2, 1}});
+    }
+    for (const std::uint32_t threads : {1u, 3u}) {
+        Executor executor(threads);
+        Finder finder;
+        std::vector<SlotPair> pairs, expected;
+        finder.find(executor, {boxes, {}}, pairs);
+        EXPECT_GT(pairs.size(), 5 * 4096u);
+        for (int round = 0; round < 5; ++round) {
+            std::vector<BodySlot> changed;
+            for (BodySlot body = round == 0 ? 3990 : 0; body < count; body += round == 0 ? 1 : 17) {
+                const Vec3 by{step(random), step(random), round == 3 ? 5.0 : 0.0};
+                boxes[body] = {boxes[body].low + by, boxes[body].high + by};
+                changed.push_back(body);
+            }
+            EXPECT_TRUE(finder.update(executor, {boxes, {}}, changed, pairs));
+            Finder().find(executor, {boxes, {}}, expected);
+            ASSERT_EQ(pairs, expected);
+        }
+        EXPECT_FALSE(finder.update(executor, {boxes, {}}, std::vector<BodySlot>{1, 5, 3000}, pairs));
+        EXPECT_EQ(pairs, expected);
+    }
+}
+
 } // namespace
 } // namespace raycontact

@@ -14,17 +14,18 @@ namespace {
 
 using Key = std::tuple<std::uint32_t, std::uint32_t, Side, std::uint32_t>;
 
-TEST(Changes, AreTheDifferencesOfTwoSteps) {
+// Of so many bodies and vertices.
+void compare_steps(std::uint32_t bodies, std::uint32_t vertices, std::uint32_t most, int steps) {
     reference::Random random(1);
     Changes changes;
     Executor executor(2);
     std::set<Key> before, touched; // all of the last step; those that touched
-    for (int step = 0; step < 500; ++step) {
+    for (int step = 0; step < steps; ++step) {
         std::set<Key> now, touches;
-        const std::uint32_t count = step % 40 == 39 ? 0 : random.below(30);
+        const std::uint32_t count = step % 40 == 39 ? 0 : random.below(most);
         for (std::uint32_t i = 0; i < count; ++i) {
-            const std::uint32_t a = random.below(3), b = a + 1 + random.below(2);
-            now.insert({a, b, random.below(2) ? Side::a : Side::b, random.below(3)});
+            const std::uint32_t a = random.below(bodies), b = a + 1 + random.below(2);
+            now.insert({a, b, random.below(2) ? Side::a : Side::b, random.below(vertices)});
         }
         std::vector<Contact> contacts;
         for (const auto& [a, b, body, vertex] : now) {
@@ -57,6 +58,12 @@ TEST(Changes, AreTheDifferencesOfTwoSteps) {
         before.swap(now);
         touched.swap(touches);
     }
+}
+
+TEST(Changes, AreTheDifferencesOfTwoSteps) {
+    compare_steps(3, 3, 30, 500);
+    compare_steps(300, 9, 12'000, 20);  // many slices
+    compare_steps(3, 3000, 12'000, 20); // pairs of more contacts than a slice
 }
 
 TEST(Changes, LostContactsTellAllThatTheirKeyTells) {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "contacts/place.h"
 
+#include "contacts/write_contact.h"
+
 #include "device/device.h"
 #include "reference/random.h"
 #include "scenes/models/model.h"
@@ -60,6 +62,57 @@ TEST(Placer, SortsTheContactsOfEachPair) {
         EXPECT_EQ(contacts[i].ray_length, local[i].distance);
         EXPECT_EQ(contacts[i].feature.kind, FeatureKind::vertex);
     }
+}
+
+// Contacts that are placed already, with keys before, between and behind those of vertices; some pairs have no others.
+TEST(Placer, PutsPlacedContactsBetweenThoseOfVertices) {
+    const std::shared_ptr<const Shape> shape = Shape::make(scenes::scene_model("gear", 902).mesh);
+    const OpenDevice opened = open_device("cpu", 2);
+    reference::Random random(2);
+    std::vector<PlacedBody> bodies;
+    std::vector<SlotPair> pairs;
+    std::vector<kernels::LocalContact> local;
+    std::vector<std::vector<Contact>> own(400);
+    std::vector<PlacedContacts> placed;
+    std::uint32_t before = 0;
+    for (std::uint32_t pair = 0; pair < own.size(); ++pair) {
+        pairs.emplace_back(2 * pair, 2 * pair + 1);
+        bodies.resize(bodies.size() + 2, PlacedBody{shape.get(), 0, 0, {}, {}});
+        std::vector<std::uint32_t> chosen(60);
+        std::iota(chosen.begin(), chosen.end(), 0u);
+        for (std::size_t i = chosen.size(); i > 1; --i)
+            std::swap(chosen[i - 1], chosen[random.below(static_cast<std::uint32_t>(i))]);
+        const std::uint32_t vertices = pair % 3 == 0 ? 0 : random.below(30), others = random.below(30);
+        for (std::uint32_t side = 0; side < 2; ++side)
+            for (std::uint32_t i = 0; i < vertices; ++i)
+                local.push_back({2 * pair + side, chosen[i], 0, 1, 1, {1, 0, 0}});
+        for (std::uint32_t i = 0; i < others; ++i) {
+            Contact contact;
+            contact.body_a = {2 * pair};
+            contact.body_b = {2 * pair + 1};
+            const std::uint32_t vertex = shape->data().mesh.vertex_index[chosen[vertices + i]];
+            contact.feature = i % 3 == 0
+                                  ? ContactFeature{FeatureKind::edges, Side::a, vertex, 7}
+                                  : ContactFeature{FeatureKind::vertex, i % 3 == 1 ? Side::a : Side::b, vertex, vertex};
+            own[pair].push_back(contact);
+        }
+        std::ranges::sort(own[pair], {}, &Contact::key);
+        if (!own[pair].empty()) placed.push_back({pair, before, own[pair]});
+        before += others;
+    }
+    std::vector<Contact> contacts;
+    Placer().run(*opened.executor, Direction::ray, bodies, pairs, by_pair(*opened.executor, local, pairs), placed,
+                 contacts);
+    ASSERT_EQ(contacts.size(), local.size() + before);
+    std::vector<std::pair<SlotPair, std::uint64_t>> found, expected;
+    for (const Contact& contact : contacts) found.emplace_back(pair_of(contact), contact.key());
+    for (const auto& list : own)
+        for (const Contact& contact : list) expected.emplace_back(pair_of(contact), contact.key());
+    for (const kernels::LocalContact& one : local)
+        expected.emplace_back(pairs[one.pair / 2],
+                              vertex_feature(one.pair % 2 == 0, shape->data().mesh.vertex_index[one.vertex], 0).key());
+    std::ranges::sort(expected);
+    EXPECT_EQ(found, expected);
 }
 
 // A vertex of a and one of b, each 0.5 m below a face that its ray leaves at an angle: cosine 0.5.

@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "executor/executor.h"
+#include "executor/rows.h"
+#include "executor/running_sums.h"
+#include "reference/random.h"
 
 #include <raycontact/error.h>
 
@@ -49,6 +52,43 @@ TEST(Executor, OneCoreRunsEverything) {
     std::uint32_t sum = 0;
     executor.run(100, 1, [&](std::uint32_t begin, std::uint32_t end) { sum += end - begin; });
     EXPECT_EQ(sum, 100u);
+}
+
+TEST(Executor, SumsUpAsOneThreadDoes) {
+    for (const std::uint32_t threads : {1u, 3u}) {
+        Executor executor(threads);
+        for (const std::size_t size : {0u, 1u, 1000u, 32768u, 32769u, 100003u, 400000u}) {
+            std::vector<std::uint64_t> numbers(size), expected(size);
+            for (std::size_t i = 0; i < size; ++i) numbers[i] = i * 2654435761u % 100;
+            std::partial_sum(numbers.begin(), numbers.end(), expected.begin());
+            sum_up(executor, std::span(numbers));
+            ASSERT_EQ(numbers, expected) << size;
+        }
+    }
+}
+
+// Rows of all lengths, some longer than a slice.
+TEST(Executor, SlicesHaveWholeRows) {
+    reference::Random random(1);
+    for (const std::size_t size : {0u, 1u, 99u, 100u, 101u, 5000u}) {
+        std::vector<std::uint32_t> rows(size);
+        std::uint32_t row = 0;
+        for (std::size_t i = 0; i < size; ++i) rows[i] = row += random.below(i / 1000 % 2 == 0 ? 3 : 300) == 1;
+        const RowSlices slices{size, 100};
+        std::vector<std::atomic<int>> seen(size);
+        std::vector<std::atomic<int>> of_slice(slices.count());
+        Executor executor(3);
+        slices.each(
+            executor, [&](std::size_t i) { return rows[i] == rows[i - 1]; },
+            [&](std::uint32_t slice, std::size_t begin, std::size_t end) {
+                ++of_slice[slice];
+                EXPECT_TRUE(begin == 0 || rows[begin - 1] != rows[begin]);
+                EXPECT_TRUE(end == size || rows[end - 1] != rows[end]);
+                for (std::size_t i = begin; i < end; ++i) ++seen[i];
+            });
+        for (const auto& times : seen) ASSERT_EQ(times, 1);
+        for (const auto& times : of_slice) ASSERT_LE(times, 1);
+    }
 }
 
 } // namespace
