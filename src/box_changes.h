@@ -3,6 +3,7 @@
 
 #include "broadphase/broad_phase.h"
 #include "broadphase/device_broad_phase.h"
+#include "free_all.h"
 #include "world_boxes.h"
 
 #include <span>
@@ -18,6 +19,11 @@ public:
     void mark(BodySlot body) noexcept { moved_.mark(body); }
     void forget() noexcept { moved_.forget(); }
     void cut(std::size_t slots) noexcept { moved_.cut(slots); }
+    /// Frees memory; all is to be told anew then.
+    void trim() {
+        free_all(listed_, is_other_, places_, extents_, others_);
+        seen_ = 0;
+    }
 
     /// Since the last call, where a device still knows so many slots as it was told of then; else of all. next: as
     /// WorldBoxes::update() has it.

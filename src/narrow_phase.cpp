@@ -66,7 +66,7 @@ void NarrowPhase::wake() {
 }
 
 void NarrowPhase::step(std::span<const PlacedBody> bodies, const MovedBodies& moved, std::span<const SlotPair> pairs,
-                       std::vector<Contact>& contacts, StepStats& stats) {
+                       std::vector<Contact>& contacts, StepStats& stats, double broad_ms) {
     const auto start = Clock::now();
     std::vector<DeviceWork> work = std::move(stats.details.work); // to reuse its memory
     stats = {};
@@ -95,7 +95,7 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, const MovedBodies& mo
         throw;
     }
 
-    count(pairs.size(), stats);
+    count(pairs.size(), stats, broad_ms);
     stats.contacts_reduced = reducer_.left_out().size();
     stats.details.contacts_merged = reducer_.merged();
     const Changes::Sums& sums = changes_.sums();
@@ -185,17 +185,25 @@ void NarrowPhase::choose_device(std::span<const PlacedBody> bodies, StepStats& s
 
 // What does not open is not missed: the CPU has found all contacts so far.
 void NarrowPhase::open_other() {
-    try {
-        std::optional<OpenDevice> opened = std::exchange(open_other_, {})();
-        if (!opened) return choice_->exclude(1, "there is no GPU");
-        found_.emplace_back();
-        assignment_.add_part();
-        balance_.add(1.0 / std::max(1u, opened->device->info().cores));
-        parts_.add(std::move(*opened)); // last: without it the rest means nothing
-    } catch (const std::exception& error) {
+    const auto give_up = [&](const std::exception& error) {
         choice_->exclude(1, "the GPU does not open");
         parts_.warn(std::string("devices \"auto\" goes on with the CPU alone, since the GPU does not open: ")
                     + error.what());
+    };
+    std::optional<OpenDevice> opened;
+    try {
+        opened = std::exchange(open_other_, {})();
+    } catch (const std::exception& error) {
+        return give_up(error);
+    }
+    if (!opened) return choice_->exclude(1, "there is no GPU");
+    assignment_.add_part();
+    found_.emplace_back();
+    balance_.add(1.0 / std::max(1u, opened->device->info().cores));
+    try {
+        parts_.add(std::move(*opened)); // last: without it the rest means nothing
+    } catch (const std::exception& error) {
+        give_up(error);
     }
 }
 
@@ -245,7 +253,7 @@ void NarrowPhase::merge(std::vector<Contact>& contacts) {
     }
 }
 
-void NarrowPhase::count(std::size_t pair_count, StepStats& stats) {
+void NarrowPhase::count(std::size_t pair_count, StepStats& stats, double broad_ms) {
     stats.details.work.resize(parts_.size());
     for (std::size_t i = 0; i < parts_.size(); ++i) {
         DeviceWork& work = stats.details.work[i];
@@ -262,7 +270,7 @@ void NarrowPhase::count(std::size_t pair_count, StepStats& stats) {
     }
     balance_.end_step(pair_count);
     if (choice_ && stats.devices_lost == 0 && in_use_ == choice_->part())
-        choice_->record(pair_count, found_[in_use_].ms);
+        choice_->record(pair_count, found_[in_use_].ms + broad_ms);
     stats.warnings = parts_.take_warnings();
 }
 

@@ -34,9 +34,10 @@ public:
     /// Forgets what the last method kept.
     void set_settings(const Settings& settings);
 
-    /// pairs: sorted, without duplicates, indices into bodies. Fills contacts and all of stats but broad_ms.
+    /// pairs: sorted, without duplicates, indices into bodies. Fills contacts and all of stats but
+    /// broad_ms, which it took to find the pairs.
     void step(std::span<const PlacedBody> bodies, const MovedBodies& moved, std::span<const SlotPair> pairs,
-              std::vector<Contact>& contacts, StepStats& stats);
+              std::vector<Contact>& contacts, StepStats& stats, double broad_ms = 0);
     /// A step in which nothing has moved since the last, for a method that then finds what it found: contacts stay.
     void rest(StepStats& stats);
     /// The rays that the methods keep for the next step, in any order; bodies as in the last step.
@@ -61,7 +62,7 @@ private:
     std::vector<std::size_t> replace(const std::vector<std::size_t>& failed, StepStats& stats);
     std::vector<std::vector<SlotPair>> give_away(const std::vector<std::size_t>& failed, StepStats& stats);
     void merge(std::vector<Contact>& contacts);
-    void count(std::size_t pair_count, StepStats& stats);
+    void count(std::size_t pair_count, StepStats& stats, double broad_ms);
     void trim(std::uint64_t pair_bytes, std::vector<Contact>& contacts);
 
     Settings settings_;

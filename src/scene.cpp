@@ -193,6 +193,7 @@ struct Scene::State {
             bool others = false;
             const auto find = [&] { others = parts[first].find_pairs(changes, slot_pairs); };
             if (!(stood && changes.moved.empty()) && !parts.before_step(first, find)) continue;
+            if (!parts[first].can_find_pairs()) return false;
             if (!stood || others) name_pairs();
             found_by = Finder::device;
             return true;
@@ -312,7 +313,7 @@ struct Scene::State {
 
     void find_contacts(double broad_ms) {
         place_bodies();
-        narrow.step(bodies, moved, slot_pairs, *contacts, stats);
+        narrow.step(bodies, moved, slot_pairs, *contacts, stats, broad_ms);
         stats.broad_ms = broad_ms;
         end_step();
         stepped = moved.step_done();
@@ -326,6 +327,7 @@ struct Scene::State {
     void trim() {
         world.trim();
         broad_phase.trim();
+        box_changes.trim();
         pairs.shrink_to_fit();
         free_all(last_pairs, given_pairs, sorted, sorter, columns);
         slot_pairs.shrink_to_fit();

@@ -22,6 +22,8 @@ public:
     /// device's primary context; null: the default stream. Throws InputError where there is no CUDA driver, where this
     /// version was built without CUDA, and for an address that is none of a device.
     static UserMemory cuda(std::uint64_t address, std::size_t bytes, void* stream = nullptr);
+    /// As a stream: whatever the device was given before is done before the memory is read or written.
+    static void* every_stream() noexcept;
     /// Of an OpenCL buffer. queue: a cl_command_queue, in order, as a CUDA stream above. buffer: a cl_mem of its
     /// context. Both are retained. offset: bytes before the stretch. Throws InputError where the buffer is shorter or
     /// of another context, and where this version was built without OpenCL.

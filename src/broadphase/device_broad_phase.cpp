@@ -18,7 +18,10 @@ using kernels::prototype::nodes_of;
 constexpr std::size_t few = 128, few_of = 256;
 // An order serves until it costs this much more than when it was new.
 constexpr double slower = 1.3;
-constexpr uint columns = 3; // of count_partners
+// Steps after which wide bodies are looked for anew.
+constexpr unsigned steps_wide = 32;
+constexpr std::size_t most_wide = 1 << 24; // items of their table, 16 bytes each
+constexpr uint columns = 3;                // of count_partners
 
 uint number(std::size_t size) {
     return Count(size).value;
@@ -49,9 +52,16 @@ bool DeviceBroadPhase::find(Device& device, const Changes& changes, std::vector<
         if (sorts) sort(device);
         fill(device);
         do search(device);
-        while (!read(device));
+        while (!read(device) && !gave_up_);
+        if (gave_up_) {
+            *this = {};
+            gave_up_ = true;
+            return false;
+        }
         if (sorts) tests_when_sorted_ = tests_;
-        sorts_next_ = tests_ > slower * tests_when_sorted_;
+        // Bodies that are wide are tested by no tree: only a new order tells whether they still are.
+        wide_steps_ = wide_slots_.empty() ? 0 : wide_steps_ + 1;
+        sorts_next_ = tests_ > slower * tests_when_sorted_ || wide_steps_ >= steps_wide;
         return take(pairs);
     } catch (...) {
         *this = {};
@@ -104,6 +114,7 @@ void DeviceBroadPhase::sort(Device& device) {
     static_assert(3 * KEY_BITS / DIGIT_BITS % 2 == 1, "the last pass ends in order_");
     host_wide_.assign(slots, 0);
     is_wide_.write(device, host_wide_);
+    wide_steps_ = 0;
     wide_slots_.clear();
     wide_.write(device, wide_slots_);
 }
@@ -139,6 +150,7 @@ void DeviceBroadPhase::list_wide(Device& device) {
     for (uint slot = 0; slot < host_wide_.size(); ++slot)
         if (host_wide_[slot] != 0) wide_slots_.push_back(slot);
     wide_.write(device, wide_slots_);
+    gave_up_ = wide_slots_.size() * blocks_of(host_wide_.size(), BLOCK_BODIES) > most_wide;
 }
 
 // Those of wide bodies lie behind the others; both are sorted.

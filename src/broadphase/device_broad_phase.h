@@ -30,6 +30,9 @@ public:
     /// The device has double. pairs: become all of those whose boxes touch, and which no filter keeps apart, sorted.
     /// Returns whether they were others before.
     bool find(Device& device, const Changes& changes, std::vector<SlotPair>& pairs);
+    /// So many bodies are near so many others, which filters may keep apart, that a host finds the pairs with less
+    /// memory. The last find() changed nothing then.
+    bool gave_up() const { return gave_up_; }
 
 private:
     void tell(Device& device, const Changes& changes);
@@ -54,7 +57,8 @@ private:
     std::vector<kernels::SortKey> host_order_;
     std::vector<SlotPair> next_;
     double tests_ = 0, tests_when_sorted_ = 0; ///< of nodes, in the last search
-    bool sorts_next_ = true;
+    unsigned wide_steps_ = 0;                  ///< since some bodies are wide
+    bool sorts_next_ = true, gave_up_ = false;
 };
 
 } // namespace raycontact

@@ -60,8 +60,10 @@ void Changes::mark(Executor& executor, std::span<Contact> contacts) {
     const RowSlices slices{contacts.size()};
     next_.resize(contacts.size());
     next_touched_.resize(contacts.size());
-    slices_.resize(std::max<std::size_t>(1, slices.count()));
-    for (Slice& slice : slices_) {
+    const std::size_t count = std::max<std::size_t>(1, slices.count());
+    if (slices_.size() < count) slices_.resize(count);
+    const std::span<Slice> own = std::span(slices_).first(count);
+    for (Slice& slice : own) {
         slice.lost.clear();
         slice.sums = {};
     }
@@ -81,7 +83,7 @@ void Changes::mark(Executor& executor, std::span<Contact> contacts) {
         });
     lost_.clear();
     sums_ = {};
-    for (const Slice& slice : slices_) {
+    for (const Slice& slice : own) {
         lost_.insert(lost_.end(), slice.lost.begin(), slice.lost.end());
         sums_.add(slice.sums);
     }

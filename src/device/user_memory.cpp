@@ -40,11 +40,16 @@ UserMemory UserMemory::host(std::span<std::byte> bytes) {
 UserMemory UserMemory::cuda([[maybe_unused]] std::uint64_t address, [[maybe_unused]] std::size_t bytes,
                             [[maybe_unused]] void* stream) {
 #ifdef RAYCONTACT_CUDA
+    if (bytes == 0) return host({}); // an empty array has no address
     return UserMemory(cuda::user_memory(address, bytes, stream));
 #else
     throw InputError("memory of a CUDA device: this raycontact was not built with CUDA (configure with "
                      "RAYCONTACT_CUDA=ON)");
 #endif
+}
+
+void* UserMemory::every_stream() noexcept {
+    return reinterpret_cast<void*>(~std::uintptr_t{0});
 }
 
 UserMemory UserMemory::opencl([[maybe_unused]] void* queue, [[maybe_unused]] void* buffer,

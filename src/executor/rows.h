@@ -14,22 +14,21 @@ namespace raycontact {
 /// Slices of a list in which some elements in a row belong together, as the contacts of a pair do: a slice has whole
 /// rows. Their number depends on the list alone.
 struct RowSlices {
-    std::size_t size;         ///< of the list
-    std::size_t least = 1024; ///< elements of a slice, but for the last
+    std::size_t size;        ///< of the list
+    std::size_t step = 1024; ///< a slice has the rows that begin in so many elements
 
-    std::size_t count() const { return (size + least - 1) / least; }
+    std::size_t count() const { return (size + step - 1) / step; }
 
     /// Calls work(slice, begin, end) for each, on all threads. belongs(i): whether element i is in the row of i - 1.
     template <class Belongs, class Work>
     void each(Executor& executor, Belongs&& belongs, Work&& work) const {
-        const auto begin_of = [&](std::size_t slice) {
-            std::size_t at = std::min(size, slice * least);
-            while (at > 0 && at < size && belongs(at)) ++at;
-            return at;
-        };
         executor.each(count(), 1, [&](std::uint32_t slice) {
-            const std::size_t begin = begin_of(slice), end = begin_of(slice + std::size_t{1});
-            if (begin < end) work(slice, begin, end);
+            const std::size_t last = std::min(size, (slice + std::size_t{1}) * step);
+            std::size_t begin = slice * step, end = last;
+            while (begin > 0 && begin < last && belongs(begin)) ++begin;
+            if (begin == last) return; // no row begins here
+            while (end < size && belongs(end)) ++end;
+            work(slice, begin, end);
         });
     }
 };

@@ -52,7 +52,7 @@ private:
         const auto size = static_cast<std::uint32_t>(found.size());
         const auto begins = [&](std::uint32_t i) { return i == 0 || i == size || found[i].pair != found[i - 1].pair; };
         executor.run(size, 512, [&](std::uint32_t begin, std::uint32_t end) {
-            while (!begins(begin)) ++begin;
+            while (begin < end && !begins(begin)) ++begin;
             for (std::uint32_t next = begin; begin < end; begin = next) {
                 while (!begins(++next)) {
                 }

@@ -23,7 +23,10 @@ public:
     ShapeStore& shapes() { return shapes_; }
 
     /// Whether its device can find the pairs of a scene, and has not the host's memory, where the host would as soon.
-    bool can_find_pairs() const { return device_->traits().has_double && !device_->traits().shares_memory; }
+    bool can_find_pairs() const {
+        return can_find_in_double() && !device_->traits().shares_memory && !broad_phase_.gave_up();
+    }
+    bool can_find_in_double() const { return device_->traits().has_double; }
     /// As DeviceBroadPhase; before begin().
     std::size_t known_slots() const { return broad_phase_.slots(); }
     bool find_pairs(const DeviceBroadPhase::Changes& changes, std::vector<SlotPair>& pairs) {

@@ -36,7 +36,10 @@ public:
     void cast(const Update& update, RayBatch& batch);
     /// Then: stores what each pair follows in the next step.
     void keep(const RayBatch& batch);
-    void clear() { table_.clear(); }
+    void clear() {
+        table_.clear();
+        cached_count_ = 0;
+    }
 
     /// The state kept for some pairs of the last step, for another part to go on with. Between two steps.
     std::vector<std::byte> export_state(Device& device, std::span<const SlotPair> pairs);

@@ -36,6 +36,7 @@ void Assignment::add_part() {
 }
 
 void Assignment::make_lists() {
+    given_away_ = true; // until the lists are whole
     for (auto& list : lists_) list.clear();
     for (std::size_t i = 0; i < open_.size(); ++i) lists_[parts_[i]].push_back(open_[i]);
     given_away_ = false;

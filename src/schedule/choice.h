@@ -13,7 +13,8 @@ namespace raycontact {
 ///
 /// It begins with the CPU. Once that has been at work for about as long as it takes to open a GPU, it tries the other
 /// part for a few steps, and stays with the faster one. It tries again where the number of pairs or the time of a step
-/// has doubled or halved, but never so often that the trials take more than a fiftieth of all time.
+/// has doubled or halved, but never so often that the trials lose more than a fiftieth of all time; opening the GPU,
+/// once, is left out.
 class DeviceChoice {
 public:
     DeviceChoice();

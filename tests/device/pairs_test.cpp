@@ -104,6 +104,8 @@ public:
         return pairs_.size();
     }
 
+    bool gave_up() const { return broad_phase_.gave_up(); }
+
     DeviceWork work; ///< of the last compare()
 
 private:
@@ -281,6 +283,17 @@ INSTANTIATE_TEST_SUITE_P(broad_phase, Devices, testing::ValuesIn(devices()), [](
         if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
     return name;
 });
+
+// Their table would take a gigabyte, and no pair is found.
+TEST(device_pairs, so_many_in_one_place_that_filters_keep_apart_are_left_to_the_host) {
+    Bodies bodies("cpu");
+    for (BodySlot slot = 0; slot < 33'000; ++slot) {
+        bodies.add(3, {});
+        bodies.filter(slot, {1, 0});
+    }
+    EXPECT_EQ(bodies.compare(), 0u);
+    EXPECT_TRUE(bodies.gave_up());
+}
 
 } // namespace
 } // namespace raycontact

@@ -17,7 +17,7 @@ constexpr std::string_view rounding_double[] = {"add.rn.f64", "sub.rn.f64", "mul
 // Move, compare, choose, cut off: no rounding. min and max ignore a NaN, as `a < b ? a : b` does with a constant b.
 constexpr std::string_view exact[] = {"neg.f32", "abs.f32",  "min.f32",         "max.f32",         "mov.f32",
                                       "mov.f64", "selp.f32", "cvt.rzi.s32.f32", "cvt.rzi.u32.f32", "neg.f64",
-                                      "min.f64", "max.f64",  "selp.f64",        "cvt.f64.f32"};
+                                      "abs.f64", "min.f64",  "max.f64",         "selp.f64",        "cvt.f64.f32"};
 constexpr std::string_view exact_families[] = {"setp.", "set.", "ld.", "st."};
 
 bool contains(std::span<const std::string_view> list, std::string_view word) {

@@ -55,7 +55,7 @@ Outcome run_part(Part& part, const Work& work, const std::vector<Way>& ways) {
             for (std::size_t i = 0; i < bodies.size(); i += 2) bodies[i].pose.translation.x += by;
             place_centres(bodies);
             moved.forget();
-            if (way.method == Method::standard) find_pairs(part, bodies);
+            if (way.method == Method::standard && part.can_find_in_double()) find_pairs(part, bodies);
             part.begin(bodies, moved, work.pairs, settings);
             std::vector<Contact> found;
             part.end(found);

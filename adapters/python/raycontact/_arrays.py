@@ -15,10 +15,10 @@ from ._memory import is_on_cuda, to_host
 
 def as_numbers(value: Any, what: str, kinds: str = "fiu") -> NDArray[Any]:
     """A NumPy array of anything that is one: lists, arrays, tensors of other libraries, of CUDA devices, too."""
+    if is_on_cuda(value):
+        value = to_host(value, what)
     try:
-        if is_on_cuda(value):
-            array = to_host(value, what)
-        elif not hasattr(value, "__array__") and hasattr(value, "__dlpack__"):
+        if not hasattr(value, "__array__") and hasattr(value, "__dlpack__"):
             array = np.from_dlpack(value)
         else:
             array = np.asarray(value)

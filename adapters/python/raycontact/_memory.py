@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from . import _core
 from ._core import InputError
 
+_EVERY_STREAM = 2**64 - 1
+
 
 class _Stretch(NamedTuple):
     """Contiguous memory. stream: 0 is CUDA's default; of the host's memory it means nothing."""
@@ -48,7 +50,9 @@ def _on_cuda(value: Any, what: str) -> _Stretch:
     if strides is not None and tuple(strides) != _contiguous(shape, dtype.itemsize):
         raise InputError(f"{what}: is not contiguous; give a contiguous copy")
     address, read_only = told["data"]
-    return _Stretch(True, int(address), shape, dtype, int(told.get("stream") or 0), bool(read_only))
+    # What names no stream (torch, Warp) may be of any; None says that nothing need be waited for.
+    stream = int(told["stream"] or 0) if "stream" in told else _EVERY_STREAM
+    return _Stretch(True, int(address), shape, dtype, stream, bool(read_only))
 
 
 def _contiguous(shape: tuple[int, ...], size: int) -> tuple[int, ...]:

@@ -106,8 +106,8 @@ class Scene:
             a four-hundredth of the smaller body's diagonal) or on the way to the next step.
         max_contacts_per_pair, max_contacts: keep those that stand for all; 0 keeps all.
     How: devices ("auto": the CPU or the first GPU, whichever is faster when both are tried, see `device_choice`;
-        "all": every GPU; or ids of `list_devices` with commas, which share the pairs), threads (0: one per core), schedule
-        ("balanced", "sticky", "counted"), inexact (accept devices that round differently).
+        "all": every GPU; or ids of `list_devices` with commas, which share the pairs), threads (0: one per core),
+        schedule ("balanced", "sticky", "counted"), inexact (accept devices that round differently).
     The paper's own constants, for "iterative" and "predictive": caster, displacement_threshold, confidence,
         culling_distance, distance_extension, max_iterations, cast_lost_walks, skip_outside.
 
@@ -178,7 +178,8 @@ class Scene:
 
         ids: one or (n,). poses: (n, 4, 4), or (4, 4) for all, from the body's frame to the world, metres, taken as they
             are (`nearest_rigid` mends those that drifted). Of a CUDA device, too: what has a
-            `__cuda_array_interface__` (torch, CuPy, Numba, Warp, JAX) is read when its stream has written it.
+            `__cuda_array_interface__` (torch, CuPy, Numba, Warp, JAX) is read when its stream has written it, or, where
+            it names none, when the device has done what it was given.
         Raises InputError naming the place in the list: an id that is not in the scene, a pose that is not finite and
         rigid to 1e-4; and where numbers of ids and poses differ.
         """
@@ -271,8 +272,8 @@ class Scene:
         in the order of `contacts`; returns how many there are. Rows behind them stay as they are.
 
         columns: by the names of Contacts, each a contiguous array, (rows,) or (rows, numbers of a contact), of NumPy or
-            with a `__cuda_array_interface__` (torch, CuPy, Numba, Warp, JAX), of the column's type; integers may be
-            signed, and `point_a` and `point_b` are float64 or float32. Of a CUDA device they are there for what the
+            with a `__cuda_array_interface__` (torch, CuPy, Numba, Warp), of the column's type; integers may be signed,
+            and `point_a` and `point_b` are float64 or float32. Of a CUDA device they are there for what the
             array's stream is given afterwards.
         Raises InputError, before anything is written, naming a column that is unknown, of another type or shape, or has
         fewer rows than there are contacts.

@@ -44,6 +44,7 @@ struct Driver {
     Function<Status(DeviceNumber device)> cuDevicePrimaryCtxRelease{library, "cuDevicePrimaryCtxRelease_v2"};
     Function<Status(ContextHandle context)> cuCtxPushCurrent{library, "cuCtxPushCurrent_v2"};
     Function<Status(ContextHandle* context)> cuCtxPopCurrent{library, "cuCtxPopCurrent_v2"};
+    Function<Status()> cuCtxSynchronize{library, "cuCtxSynchronize"};
     Function<Status(StreamHandle* stream, unsigned flags)> cuStreamCreate{library, "cuStreamCreate"};
     Function<Status(StreamHandle stream)> cuStreamSynchronize{library, "cuStreamSynchronize"};
     Function<Status(StreamHandle stream)> cuStreamDestroy{library, "cuStreamDestroy_v2"};

@@ -24,16 +24,20 @@ DeviceNumber device_of(Address address) {
 // Copies wait for each other in the caller's stream.
 class Stretch : public UserMemory::Access {
 public:
-    Stretch(Address address, std::size_t bytes, StreamHandle stream)
-        : context_(device_of(address)), address_(address), bytes_(bytes), stream_(stream) {}
+    Stretch(Address address, std::size_t bytes, void* stream)
+        : context_(device_of(address)), address_(address), bytes_(bytes),
+          waits_for_all_(stream == UserMemory::every_stream()),
+          stream_(waits_for_all_ ? nullptr : static_cast<StreamHandle>(stream)) {}
 
     std::size_t bytes() const override { return bytes_; }
     void read(std::span<std::byte> to) const override {
         const Current current(context_);
+        wait_for_all();
         check(driver().cuMemcpyDtoHAsync(to.data(), address_, to.size(), stream_), "cuMemcpyDtoHAsync");
     }
     void write(std::span<const std::byte> from) const override {
         const Current current(context_);
+        wait_for_all();
         check(driver().cuMemcpyHtoDAsync(address_, from.data(), from.size(), stream_), "cuMemcpyHtoDAsync");
     }
     void finish() const override {
@@ -42,16 +46,21 @@ public:
     }
 
 private:
+    void wait_for_all() const {
+        if (waits_for_all_) check(driver().cuCtxSynchronize(), "cuCtxSynchronize");
+    }
+
     PrimaryContext context_;
     Address address_;
     std::size_t bytes_;
+    bool waits_for_all_;
     StreamHandle stream_;
 };
 
 } // namespace
 
 std::shared_ptr<const UserMemory::Access> user_memory(std::uint64_t address, std::size_t bytes, void* stream) {
-    return std::make_shared<Stretch>(address, bytes, static_cast<StreamHandle>(stream));
+    return std::make_shared<Stretch>(address, bytes, stream);
 }
 
 } // namespace raycontact::cuda

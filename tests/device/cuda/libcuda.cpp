@@ -232,6 +232,13 @@ int cuCtxPopCurrent_v2(void** context) {
     fake().count_alive();
     return 0;
 }
+int cuCtxSynchronize() {
+    ENTER;
+    if (misused(__func__, false)) return invalid;
+    run_until(fake().default_stream, ~std::size_t{0});
+    for (auto& [handle, stream] : fake().streams) run_until(*stream, ~std::size_t{0});
+    return 0;
+}
 int cuStreamCreate(Stream** stream, unsigned) {
     ENTER;
     return misused(__func__, false) ? invalid : make(fake().streams, stream, Stream());

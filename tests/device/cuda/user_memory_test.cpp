@@ -67,6 +67,17 @@ TEST_F(UserMemoryOnCuda, is_copied_in_the_order_of_its_stream) {
     }
 }
 
+// Who does not know the stream waits for all of them.
+TEST_F(UserMemoryOnCuda, every_stream_is_waited_for) {
+    const std::array<std::byte, 2> two{std::byte{5}, std::byte{6}};
+    const UserMemory memory = UserMemory::cuda(address, 64, stream);
+    memory.write(two);
+    std::vector<std::byte> read(2);
+    UserMemory::cuda(address, 64, UserMemory::every_stream()).read(read);
+    EXPECT_EQ(read, std::vector(two.begin(), two.end()));
+    EXPECT_EQ(UserMemory::cuda(0, 0).bytes(), 0u) << "an empty array has no address";
+}
+
 TEST_F(UserMemoryOnCuda, what_is_no_memory_of_a_device_is_refused) {
     int on_the_host = 0;
     EXPECT_THROW(UserMemory::cuda(reinterpret_cast<std::uintptr_t>(&on_the_host), 4), InputError);
