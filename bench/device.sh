@@ -14,7 +14,7 @@
 # contacts are not the CPU's (after everything was written), 2 something is missing.
 #
 # By environment variables: DEVICES (list), STEPS (ranges), METHODS, COPIES (list; more than 1: caster bvh only), RUNS,
-# BASIC_STEPS, RECORDING, TESTS (none: only measure), OUT. RAYCONTACT_NVRTC is passed on to the program.
+# BASIC_STEPS, BODIES (list, may be empty), RECORDING, TESTS (none: only measure), OUT. RAYCONTACT_NVRTC is passed on to the program.
 set -euo pipefail
 
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -22,7 +22,7 @@ default_ranges="60:76 200:232" # the avalanche lands; it lies and creeps
 recorded_steps=240
 pack_mib=60
 # Program and what it is asked for. The smallest case is the one for a checker of every access.
-tests=('opencl_device_test queue.*:scan.*:driver.kernels*' 'opencl_kernels_test devices.*:small.*' 'opencl_scenes_test *')
+tests=('opencl_device_test queue.*:scan.*:driver.kernels*' 'opencl_kernels_test devices.*:small.*' 'opencl_scenes_test *' 'device_pairs_test *')
 checked='opencl_kernels_test small.*'
 checkers=(memcheck racecheck initcheck synccheck)
 
@@ -285,6 +285,15 @@ fi
 for number in $copies; do
     for range in ${STEPS:-$default_ranges}; do
         for device in cpu $devices; do measure "$device" "$range" "$number"; done
+    done
+done
+
+# Pairs that each device finds among many bodies; for the log alone.
+for number in ${BODIES-4096 100000}; do
+    for device in $devices; do
+        say "$device, $number bodies"
+        { echo; echo "raycontact-bench scale --devices $device --bodies $number"; } >>"$log"
+        "$benchmarks" scale --devices "$device" --bodies "$number" --steps 5 >>"$log" 2>&1 || status=1
     done
 done
 
