@@ -133,11 +133,11 @@ void BroadPhase::gather(Executor& executor, std::size_t slots, std::vector<SlotP
 
 // Puts what was found in the place of all pairs of boxes that changed. Mostly it is the same.
 bool BroadPhase::replace(Executor& executor, std::vector<SlotPair>& pairs) {
-    constexpr std::size_t at_once = 4096;
-    const std::size_t slices = pairs.size() / at_once + 1;
+    constexpr std::size_t slice_size = 4096;
+    const std::size_t slices = pairs.size() / slice_size + 1;
     const auto of_slice = [&](std::size_t s) {
-        const std::size_t begin = std::min(pairs.size(), s * at_once);
-        return std::span(pairs).subspan(begin, std::min(at_once, pairs.size() - begin));
+        const std::size_t begin = std::min(pairs.size(), s * slice_size);
+        return std::span(pairs).subspan(begin, std::min(slice_size, pairs.size() - begin));
     };
     // What comes up to the first pair of the next slice.
     const auto come_of = [&](std::size_t s) {
