@@ -289,3 +289,12 @@ def test_small_mistakes_are_told(torus, tmp_path):
         scene.find_contacts()
         recorder.record()
         recorder.finish()
+
+
+def test_a_scene_tells_which_device_it_chose():
+    assert rc.Scene(devices="cpu").device_choice == "cpu: as given"
+    scene = rc.Scene(devices="auto")
+    assert scene.device_choice == "cpu: not measured yet"
+    assert rc.Scene(devices="auto", schedule="counted").device_choice.startswith(
+        "cpu: schedule counted goes by no clock"
+    )
