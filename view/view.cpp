@@ -15,7 +15,6 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <ranges>
 #include <stdexcept>
 
 namespace raycontact::view {
@@ -105,8 +104,8 @@ Found find_contacts(recording::Reader& reader, const ViewOptions& options) {
         found.contacts.push_back(scene.stats().contacts);
         found.depths.push_back(scene.stats().depth_max);
         if (i % options.layer_every == 0) found.layers.push_back(read_layer(scene, i));
-        for (const DeviceWork& work : scene.stats().details.work | std::views::drop(found.devices.size()))
-            found.devices.push_back(work.device);
+        const std::vector<DeviceWork>& work = scene.stats().details.work;
+        for (std::size_t k = found.devices.size(); k < work.size(); ++k) found.devices.push_back(work[k].device);
         if (options.progress) options.progress(reader.steps() + i + 1);
     }
     return found;
