@@ -71,6 +71,7 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, const MovedBodies& mo
     std::vector<DeviceWork> work = std::move(stats.details.work); // to reuse its memory
     stats = {};
     stats.details.work = std::move(work);
+    stats.broad_ms = broad_ms;
     try {
         if (const auto lost = parts_.take_lost(); !lost.empty()) give_away(lost, stats);
         assignment_.assign(pairs, balance_);
@@ -95,7 +96,7 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, const MovedBodies& mo
         throw;
     }
 
-    count(pairs.size(), stats, broad_ms);
+    count(pairs.size(), stats);
     stats.contacts_reduced = reducer_.left_out().size();
     stats.details.contacts_merged = reducer_.merged();
     const Changes::Sums& sums = changes_.sums();
@@ -253,7 +254,7 @@ void NarrowPhase::merge(std::vector<Contact>& contacts) {
     }
 }
 
-void NarrowPhase::count(std::size_t pair_count, StepStats& stats, double broad_ms) {
+void NarrowPhase::count(std::size_t pair_count, StepStats& stats) {
     stats.details.work.resize(parts_.size());
     for (std::size_t i = 0; i < parts_.size(); ++i) {
         DeviceWork& work = stats.details.work[i];
@@ -270,7 +271,7 @@ void NarrowPhase::count(std::size_t pair_count, StepStats& stats, double broad_m
     }
     balance_.end_step(pair_count);
     if (choice_ && stats.devices_lost == 0 && in_use_ == choice_->part())
-        choice_->record(pair_count, found_[in_use_].ms + broad_ms);
+        choice_->record(pair_count, found_[in_use_].ms + stats.broad_ms);
     stats.warnings = parts_.take_warnings();
 }
 

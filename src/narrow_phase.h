@@ -34,8 +34,8 @@ public:
     /// Forgets what the last method kept.
     void set_settings(const Settings& settings);
 
-    /// pairs: sorted, without duplicates, indices into bodies. Fills contacts and all of stats but
-    /// broad_ms, which it took to find the pairs.
+    /// pairs: sorted, without duplicates, indices into bodies. Fills contacts and stats. broad_ms: milliseconds
+    /// that it took to find the pairs.
     void step(std::span<const PlacedBody> bodies, const MovedBodies& moved, std::span<const SlotPair> pairs,
               std::vector<Contact>& contacts, StepStats& stats, double broad_ms = 0);
     /// A step in which nothing has moved since the last, for a method that then finds what it found: contacts stay.
@@ -62,7 +62,7 @@ private:
     std::vector<std::size_t> replace(const std::vector<std::size_t>& failed, StepStats& stats);
     std::vector<std::vector<SlotPair>> give_away(const std::vector<std::size_t>& failed, StepStats& stats);
     void merge(std::vector<Contact>& contacts);
-    void count(std::size_t pair_count, StepStats& stats, double broad_ms);
+    void count(std::size_t pair_count, StepStats& stats);
     void trim(std::uint64_t pair_bytes, std::vector<Contact>& contacts);
 
     Settings settings_;

@@ -4,7 +4,7 @@
 #include "body_slots.h"
 #include "box_changes.h"
 #include "broadphase/broad_phase.h"
-#include "contacts/columns.h"
+#include "contacts/column_writer.h"
 #include "contacts/predictions.h"
 #include "executor/float_environment.h"
 #include "free_all.h"
@@ -12,7 +12,7 @@
 #include "narrow_phase.h"
 #include "next_poses.h"
 #include "pose_fault.h"
-#include "pose_form.h"
+#include "read_poses.h"
 #include "shape/preparer.h"
 #include "shape/shape_data.h"
 #include "world_boxes.h"
@@ -314,7 +314,6 @@ struct Scene::State {
     void find_contacts(double broad_ms) {
         place_bodies();
         narrow.step(bodies, moved, slot_pairs, *contacts, stats, broad_ms);
-        stats.broad_ms = broad_ms;
         end_step();
         stepped = moved.step_done();
         some_new = true;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "broadphase/broad_phase.h"
 
+#include "executor/row_slices.h"
+
 #include <algorithm>
 #include <atomic>
 #include <bit>
@@ -133,48 +135,37 @@ void BroadPhase::gather(Executor& executor, std::size_t slots, std::vector<SlotP
 
 // Puts what was found in the place of all pairs of boxes that changed. Mostly it is the same.
 bool BroadPhase::replace(Executor& executor, std::vector<SlotPair>& pairs) {
-    constexpr std::size_t slice_size = 4096;
-    const std::size_t slices = pairs.size() / slice_size + 1;
-    const auto of_slice = [&](std::size_t s) {
-        const std::size_t begin = std::min(pairs.size(), s * slice_size);
-        return std::span(pairs).subspan(begin, std::min(slice_size, pairs.size() - begin));
+    const RowSlices slices{pairs.size(), 4096};
+    const auto alone = [](std::size_t) { return false; };
+    const auto come_beside = [&](std::size_t begin, std::size_t end) {
+        return beside(come_, begin, end, pairs.size(), [&](std::size_t i) { return pairs[i]; });
     };
-    // What comes up to the first pair of the next slice.
-    const auto come_of = [&](std::size_t s) {
-        const auto at = [&](std::size_t slice) {
-            if (slice == 0 || slice >= slices) return slice == 0 ? come_.begin() : come_.end();
-            const auto own = of_slice(slice);
-            return own.empty() ? come_.end() : std::lower_bound(come_.begin(), come_.end(), own.front());
-        };
-        return std::span(at(s), at(s + 1));
-    };
-    ends_.assign(slices, 0);
+    ends_.assign(slices.count(), 0);
     std::atomic<bool> differ = false;
-    executor.each(slices, 1, [&](std::uint32_t s) {
-        const auto come = come_of(s);
+    slices.each(executor, alone, [&](std::uint32_t slice, std::size_t begin, std::size_t end) {
+        const auto come = come_beside(begin, end);
+        auto same = come.begin();
         std::size_t gone = 0;
-        bool same = true;
-        for (const SlotPair& pair : of_slice(s)) {
-            if (!is_changed(pair)) continue;
-            same = same && gone < come.size() && come[gone] == pair;
+        for (std::size_t i = begin; i < end; ++i) {
+            if (!is_changed(pairs[i])) continue;
+            if (same != come.end() && *same == pairs[i]) ++same;
             ++gone;
         }
-        if (!same || gone != come.size()) differ = true;
-        ends_[s] = of_slice(s).size() - gone + come.size();
+        if (same != come.end() || gone != come.size()) differ = true;
+        ends_[slice] = end - begin - gone + come.size();
     });
     if (!differ) return false;
     std::partial_sum(ends_.begin(), ends_.end(), ends_.begin());
     next_.resize(ends_.back());
-    executor.each(slices, 1, [&](std::uint32_t s) {
-        auto to = next_.begin() + std::ptrdiff_t(s == 0 ? 0 : ends_[s - 1]);
-        const auto come = come_of(s);
-        auto more = come.begin();
-        for (const SlotPair& pair : of_slice(s)) {
-            if (is_changed(pair)) continue;
-            for (; more != come.end() && *more < pair; ++more) *to++ = *more;
-            *to++ = pair;
+    slices.each(executor, alone, [&](std::uint32_t slice, std::size_t begin, std::size_t end) {
+        auto to = next_.begin() + std::ptrdiff_t(slice == 0 ? 0 : ends_[slice - 1]);
+        auto [more, come_end] = come_beside(begin, end);
+        for (std::size_t i = begin; i < end; ++i) {
+            if (is_changed(pairs[i])) continue;
+            for (; more != come_end && *more < pairs[i]; ++more) *to++ = *more;
+            *to++ = pairs[i];
         }
-        std::copy(more, come.end(), to);
+        std::copy(more, come_end, to);
     });
     pairs.swap(next_);
     return true;

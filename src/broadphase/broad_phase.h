@@ -2,7 +2,7 @@
 #pragma once
 
 #include "broadphase/box_tree.h"
-#include "broadphase/sort_pairs.h"
+#include "broadphase/pair_sorter.h"
 
 #include <cstdint>
 #include <span>

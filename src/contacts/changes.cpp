@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "contacts/changes.h"
 
-#include "executor/rows.h"
+#include "executor/row_slices.h"
 
 #include <algorithm>
 
@@ -60,30 +60,24 @@ void Changes::mark(Executor& executor, std::span<Contact> contacts) {
     const RowSlices slices{contacts.size()};
     next_.resize(contacts.size());
     next_touched_.resize(contacts.size());
-    const std::size_t count = std::max<std::size_t>(1, slices.count());
-    if (slices_.size() < count) slices_.resize(count);
-    const std::span<Slice> own = std::span(slices_).first(count);
-    for (Slice& slice : own) {
+    if (slices_.size() < slices.count()) slices_.resize(slices.count());
+    const std::span<Slice> all = std::span(slices_).first(slices.count());
+    for (Slice& slice : all) {
         slice.lost.clear();
         slice.sums = {};
     }
     const auto pair_at = [&](std::size_t i) { return order_of(contacts[i]).first; };
     const auto pair_of_known = [](const Known& known) { return known.order().first; };
-    // Those of the last step up to the pair of the i-th contact are an earlier slice's.
-    const auto old_at = [&](std::size_t i) {
-        if (i == 0 || i == contacts.size()) return i == 0 ? 0 : previous_.size();
-        const auto at = std::ranges::lower_bound(previous_, pair_at(i), {}, pair_of_known);
-        return static_cast<std::size_t>(at - previous_.begin());
-    };
-    if (contacts.empty()) compare(0, previous_.size(), contacts, 0, slices_.front());
     slices.each(
         executor, [&](std::size_t i) { return pair_at(i) == pair_at(i - 1); },
         [&](std::uint32_t slice, std::size_t begin, std::size_t end) {
-            compare(old_at(begin), old_at(end), contacts.subspan(begin, end - begin), begin, slices_[slice]);
+            const auto old = beside(previous_, begin, end, contacts.size(), pair_at, pair_of_known);
+            const auto first = static_cast<std::size_t>(old.begin() - previous_.begin());
+            compare(first, first + old.size(), contacts.subspan(begin, end - begin), begin, slices_[slice]);
         });
     lost_.clear();
     sums_ = {};
-    for (const Slice& slice : own) {
+    for (const Slice& slice : all) {
         lost_.insert(lost_.end(), slice.lost.begin(), slice.lost.end());
         sums_.add(slice.sums);
     }

@@ -3,6 +3,7 @@
 
 #include "contacts/refine.h"
 #include "contacts/write_contact.h"
+#include "executor/row_slices.h"
 #include "mesh/vector.h"
 #include "platform/prefetch.h"
 #include "shape/shape_data.h"
@@ -91,13 +92,12 @@ void Placer::run(Executor& executor, Direction direction, std::span<const Placed
         const Refiner refiner(source, target);
         for (std::uint32_t i = begin; i < end; ++i) refiner.refine(to[i - begin], local[order_[i] & 0xffffffff]);
     };
-    const auto pair_at = [&](std::uint32_t i) { return local[i].pair / 2; };
-    // A slice handles the pairs that begin in it.
-    executor.run(static_cast<std::uint32_t>(local.size()), 256, [&](std::uint32_t begin, std::uint32_t end) {
-        while (begin > 0 && begin < end && pair_at(begin) == pair_at(begin - 1)) ++begin;
-        if (begin == end) return;
-        auto own = std::ranges::lower_bound(placed, pair_at(begin), {}, &PlacedContacts::pair);
-        while (begin < end) {
+    const auto pair_at = [&](std::size_t i) { return local[i].pair / 2; };
+    const RowSlices slices{local.size(), 256};
+    const auto belongs = [&](std::size_t i) { return pair_at(i) == pair_at(i - 1); };
+    slices.each(executor, belongs, [&](std::uint32_t, std::size_t first, std::size_t end) {
+        auto own = beside(placed, first, end, local.size(), pair_at, &PlacedContacts::pair).begin();
+        for (auto begin = static_cast<std::uint32_t>(first); begin < end;) {
             const std::uint32_t pair = pair_at(begin);
             const std::uint32_t middle = by_pair.first(2 * pair + std::size_t{1});
             const std::uint32_t next = by_pair.first(2 * pair + std::size_t{2});

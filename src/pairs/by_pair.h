@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "executor/running_sums.h"
+#include "executor/row_slices.h"
+#include "executor/sum_up.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -22,12 +23,14 @@ public:
         executor.run(static_cast<std::uint32_t>(firsts_.size()), 1 << 15, [&](std::uint32_t begin, std::uint32_t end) {
             std::fill(firsts_.begin() + begin, firsts_.begin() + end, 0);
         });
-        each_row(executor, found, [&](std::uint32_t begin, std::uint32_t end) {
-            firsts_[directed[found[begin].pair] + 1] = end - begin;
+        const RowSlices slices{found.size(), 512};
+        const auto belongs = [&](std::size_t i) { return found[i].pair == found[i - 1].pair; };
+        slices.each_row(executor, belongs, [&](std::size_t begin, std::size_t end) {
+            firsts_[directed[found[begin].pair] + 1] = static_cast<std::uint32_t>(end - begin);
         });
         sum_up(executor, std::span(firsts_));
         all_.resize(found.size());
-        each_row(executor, found, [&](std::uint32_t begin, std::uint32_t end) {
+        slices.each_row(executor, belongs, [&](std::size_t begin, std::size_t end) {
             const std::uint32_t pair = directed[found[begin].pair];
             for (T* own = &all_[firsts_[pair]]; begin < end; ++begin, ++own) {
                 *own = found[begin];
@@ -46,21 +49,6 @@ public:
     }
 
 private:
-    /// Calls work(begin, end) for the places of each pair's.
-    template <class Work>
-    static void each_row(Executor& executor, std::span<const T> found, Work&& work) {
-        const auto size = static_cast<std::uint32_t>(found.size());
-        const auto begins = [&](std::uint32_t i) { return i == 0 || i == size || found[i].pair != found[i - 1].pair; };
-        executor.run(size, 512, [&](std::uint32_t begin, std::uint32_t end) {
-            while (begin < end && !begins(begin)) ++begin;
-            for (std::uint32_t next = begin; begin < end; begin = next) {
-                while (!begins(++next)) {
-                }
-                work(begin, next);
-            }
-        });
-    }
-
     std::vector<T> all_;
     std::vector<std::uint32_t> firsts_{0}; ///< by directed index, and one more
 };

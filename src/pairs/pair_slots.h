@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "executor/rows.h"
+#include "executor/copy_all.h"
+#include "executor/row_slices.h"
 #include "free_all.h"
 #include "slot_pair.h"
 
@@ -29,9 +30,9 @@ public:
     bool match(Executor& executor, std::span<const SlotPair> pairs, Kept&& kept, Opened&& opened, Closed&& closed) {
         if (std::equal(pairs.begin(), pairs.end(), open_.begin(), open_.end())) return false;
         next_.resize(pairs.size());
-        const std::size_t count = pairs.size() / slice_size + 1;
+        const std::size_t count = RowSlices{pairs.size(), slice_size}.count();
         if (slices_.size() < count) slices_.resize(count);
-        executor.each(count, 1, [&](std::uint32_t s) { compare(pairs, s, s + 1 == count); });
+        executor.each(count, 1, [&](std::uint32_t s) { compare(pairs, s); });
         const std::span<const Slice> slices = std::span(slices_).first(count);
         for (const Slice& slice : slices)
             for (const std::size_t old : slice.closed) {
@@ -86,17 +87,16 @@ private:
     };
 
     // The s-th slice of `pairs`, and the old ones from its first pair up to that of the next slice.
-    void compare(std::span<const SlotPair> pairs, std::size_t s, bool last) {
+    void compare(std::span<const SlotPair> pairs, std::size_t s) {
         Slice& slice = slices_[s];
         slice.kept.clear();
         slice.opened.clear();
         slice.closed.clear();
-        const auto old_at = [&](std::size_t now) {
-            return static_cast<std::size_t>(std::lower_bound(open_.begin(), open_.end(), pairs[now]) - open_.begin());
-        };
-        std::size_t now = s * slice_size, old = s == 0 ? 0 : now < pairs.size() ? old_at(now) : open_.size();
+        std::size_t now = s * slice_size;
         const std::size_t end = std::min(pairs.size(), now + slice_size);
-        const std::size_t old_end = last || end == pairs.size() ? open_.size() : old_at(end);
+        const auto before = beside(open_, now, end, pairs.size(), [&](std::size_t i) { return pairs[i]; });
+        auto old = static_cast<std::size_t>(before.begin() - open_.begin());
+        const std::size_t old_end = old + before.size();
         while (now < end || old < old_end) {
             // Most pairs stay, in runs.
             const std::size_t most = std::min(end - now, old_end - old);

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "part/part.h"
 
-#include "executor/rows.h"
+#include "executor/copy_all.h"
+#include "executor/row_slices.h"
 #include "free_all.h"
 
 #include <algorithm>
@@ -73,19 +74,17 @@ void Part::end(std::vector<Contact>& contacts) {
 // Puts the contacts of pairs that rest between those found. Both are in order; slices of the last step's hold whole
 // pairs.
 void Part::add_resting(std::vector<Contact>& contacts) {
-    if (last_.empty()) return;
     const RowSlices slices{last_.size()};
     const auto belongs = [&](std::size_t i) { return pair_of(last_[i]) == pair_of(last_[i - 1]); };
-    // What was found before the i-th of the last step's is an earlier slice's.
-    const auto found_at = [&](std::size_t i) {
-        if (i == 0 || i == last_.size()) return i == 0 ? contacts.cbegin() : contacts.cend();
-        return std::ranges::lower_bound(std::as_const(contacts), pair_of(last_[i]), {}, pair_of);
+    const auto pair_at = [&](std::size_t i) { return pair_of(last_[i]); };
+    const auto found_beside = [&](std::size_t begin, std::size_t end) {
+        return beside(std::as_const(contacts), begin, end, last_.size(), pair_at, pair_of);
     };
     const Update now = update(bodies_, pairs_);
     stays_.resize(last_.size());
     ends_.assign(slices.count(), 0);
     slices.each(*executor_, belongs, [&](std::uint32_t slice, std::size_t begin, std::size_t end) {
-        auto place = std::ranges::lower_bound(pairs_, pair_of(last_[begin]));
+        auto place = beside(pairs_, begin, end, last_.size(), pair_at).begin();
         for (std::size_t i = begin; i < end; ++i) {
             if (i > begin && belongs(i)) {
                 stays_[i] = stays_[i - 1];
@@ -96,14 +95,13 @@ void Part::add_resting(std::vector<Contact>& contacts) {
             }
             ends_[slice] += static_cast<std::size_t>(stays_[i]);
         }
-        ends_[slice] += static_cast<std::size_t>(found_at(end) - found_at(begin));
+        ends_[slice] += found_beside(begin, end).size();
     });
     std::partial_sum(ends_.begin(), ends_.end(), ends_.begin());
     merged_.resize(ends_.back());
     slices.each(*executor_, belongs, [&](std::uint32_t slice, std::size_t begin, std::size_t end) {
         auto to = merged_.begin() + static_cast<std::ptrdiff_t>(slice == 0 ? 0 : ends_[slice - 1]);
-        auto found = found_at(begin);
-        const auto found_end = found_at(end);
+        auto [found, found_end] = found_beside(begin, end);
         for (std::size_t i = begin; i < end; ++i) {
             if (stays_[i] == 0) continue;
             for (; found != found_end && pair_of(*found) < pair_of(last_[i]); ++found) *to++ = *found;

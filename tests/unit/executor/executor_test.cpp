@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "executor/executor.h"
-#include "executor/rows.h"
-#include "executor/running_sums.h"
+#include "executor/row_slices.h"
+#include "executor/sum_up.h"
 #include "reference/random.h"
 
 #include <raycontact/error.h>

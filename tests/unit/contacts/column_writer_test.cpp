@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "contacts/columns.h"
+#include "contacts/column_writer.h"
 
 #include "reference/random.h"
 

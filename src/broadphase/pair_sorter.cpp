@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "broadphase/sort_pairs.h"
+#include "broadphase/pair_sorter.h"
 
-#include "executor/running_sums.h"
+#include "executor/sum_up.h"
 
 #include <algorithm>
 #include <atomic>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "pose_form.h"
+#include "read_poses.h"
 
 #include <raycontact/error.h>
 
