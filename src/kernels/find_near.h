@@ -351,13 +351,13 @@ DEVICE void cast_together(const EdgeArrays* arrays, const EdgeGroup* group, uint
     float box[6];
     box_of_edges(box, group, own);
     uint written = 0u;
-    Descent way = {0u, 0u, children_in(box, tree)};
+    Descent way = {0u, 0u, lanes_in(box, tree->bounds)};
     for (;;) {
         while (way.children != 0u) {
             const uint leaf_lane = lowest_bit(way.children);
             const uint child = next_child(&way, tree);
             if ((child & LEAF) == 0u) {
-                go_down(&way, child, children_in(box, tree + child));
+                go_down(&way, child, lanes_in(box, tree[child].bounds));
                 continue;
             }
             READS(TriangleBlock) block = blocks + (child & ~LEAF);

@@ -188,17 +188,6 @@ STRUCT(BoxWalk) {
     uint tests;        // of nodes
 };
 
-DEVICE uint lanes_in(const float* box, READS(BoxNode) node) {
-    int within[NODE_LANES];
-    FOR_LANES(k, NODE_LANES) {
-        const uint x = (node->bounds[0][k] <= box[3]) & (node->bounds[3][k] >= box[0]);
-        const uint y = (node->bounds[1][k] <= box[4]) & (node->bounds[4][k] >= box[1]);
-        const uint z = (node->bounds[2][k] <= box[5]) & (node->bounds[5][k] >= box[2]);
-        within[k] = -(int)(x & y & z);
-    }
-    return pack_sixteen(within);
-}
-
 DEVICE BoxWalk begin_walk(READS(WorldBox) box, uint slots, uint levels, READS(BoxNode) tree) {
     BoxWalk walk;
     for (int k = 0; k < 3; ++k) {
@@ -209,7 +198,7 @@ DEVICE BoxWalk begin_walk(READS(WorldBox) box, uint slots, uint levels, READS(Bo
     walk.level = levels - 1u;
     walk.first = nodes_below(slots, levels - 1u);
     walk.at = 0u;
-    walk.children = lanes_in(walk.box, tree + walk.first);
+    walk.children = lanes_in(walk.box, tree[walk.first].bounds);
     walk.tests = 1u;
     return walk;
 }
@@ -236,7 +225,7 @@ DEVICE uint next_near(BoxWalk* walk, uint slots, uint levels, READS(BoxNode) tre
             walk->at += 1u;
             if (walk->at == nodes_of(slots, walk->level)) return NONE;
         }
-        walk->children = lanes_in(walk->box, tree + walk->first + walk->at);
+        walk->children = lanes_in(walk->box, tree[walk->first + walk->at].bounds);
         walk->tests += 1u;
     }
 }

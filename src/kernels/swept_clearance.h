@@ -130,7 +130,7 @@ DEVICE uint children_in_clearance(const SweptClearance* swept, READS(Node) node)
         const float most_v = ((avx * sx + avy * sy) + avz * sz) + twice;
         within[k] = -(int)((u <= most_u) & (v <= most_v));
     }
-    return pack_sixteen(within) & children_in(swept->box, node);
+    return pack_sixteen(within) & lanes_in(swept->box, node->bounds);
 }
 
 // Searches all triangles in the swept clearance.

@@ -88,13 +88,13 @@ DEVICE uint hit_children(const RayFrame* ray, READS(Node) node, float limit, flo
     return pack_sixteen(hit);
 }
 
-// Child boxes that reach into a box: lower x y z, upper x y z.
-DEVICE uint children_in(const float* box, READS(Node) node) {
+// Boxes of a node, of triangles or of bodies, that reach into a box: lower x y z, upper x y z.
+DEVICE uint lanes_in(const float* box, GLOBAL const float (*RESTRICT bounds)[NODE_LANES]) {
     int within[NODE_LANES];
     FOR_LANES(k, NODE_LANES) {
-        const uint x = (node->bounds[0][k] <= box[3]) & (node->bounds[3][k] >= box[0]);
-        const uint y = (node->bounds[1][k] <= box[4]) & (node->bounds[4][k] >= box[1]);
-        const uint z = (node->bounds[2][k] <= box[5]) & (node->bounds[5][k] >= box[2]);
+        const uint x = (bounds[0][k] <= box[3]) & (bounds[3][k] >= box[0]);
+        const uint y = (bounds[1][k] <= box[4]) & (bounds[4][k] >= box[1]);
+        const uint z = (bounds[2][k] <= box[5]) & (bounds[5][k] >= box[2]);
         within[k] = -(int)(x & y & z);
     }
     return pack_sixteen(within);

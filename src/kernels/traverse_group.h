@@ -86,8 +86,9 @@ DEVICE uint find_near_leaves(NearLeaves* leaves, const Runs* runs) {
         level = 1u - level;
         below->count = 0u;
         for (uint i = 0u; i < visits->count; ++i)
-            near[i] = ((full >> visits->who[i]) & 1u) != 0u ? 0u // it would take the room of others
-                                                            : children_in(runs->box[visits->who[i]], visits->at[i]);
+            near[i] = ((full >> visits->who[i]) & 1u) != 0u
+                          ? 0u // it would take the room of others
+                          : lanes_in(runs->box[visits->who[i]], visits->at[i]->bounds);
         for (uint i = 0u; i < visits->count; i += 4u) {
             ulong left = four_sixteens(near, i, visits->count);
             const uint most = bit_count_of_long(left);
@@ -117,7 +118,7 @@ DEVICE uint find_near_leaves(NearLeaves* leaves, const Runs* runs) {
 }
 
 // A bit for each ray of a group that meets a node's lane: hit_children() of one box and all rays. Only for lanes that
-// children_in() found: an empty lane's inverted box would count as a valid one here.
+// lanes_in() found: an empty lane's inverted box would count as a valid one here.
 DEVICE uint rays_that_meet(const RayGroup* group, READS(Node) node, uint lane) {
     const float low_x = node->bounds[0][lane], low_y = node->bounds[1][lane], low_z = node->bounds[2][lane];
     const float high_x = node->bounds[3][lane], high_y = node->bounds[4][lane], high_z = node->bounds[5][lane];

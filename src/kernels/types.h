@@ -264,8 +264,8 @@ STRUCT(Hit) {
 WIRE_SIZE(Hit, 16);
 
 // The results of a scan. items: the number of items whose results are to be written; 0 if there are no results or no
-// room. results: the number of results, with those before (ScanOf); 0 if there is no room. sums: of the columns, whether or not there is room; NONE
-// if 32 bits cannot hold one.
+// room. results: the number of results, with those before (ScanOf); 0 if there is no room. sums: of the columns,
+// whether or not there is room; NONE if 32 bits cannot hold one.
 STRUCT(Totals) {
     uint items;
     uint results;

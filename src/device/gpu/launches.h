@@ -21,14 +21,15 @@ constexpr const char* name_of(KernelId id) {
     return kernel_names[static_cast<std::size_t>(id)];
 }
 
-/// Whether it is left out where a device has no double (kernel_text.h).
-constexpr bool is_in_double(KernelId kernel) {
-    constexpr KernelId all[] = {KernelId::set_extents,    KernelId::make_boxes,     KernelId::fill_nodes,
-                                KernelId::make_keys,      KernelId::count_digits,   KernelId::move_keys,
-                                KernelId::count_partners, KernelId::write_partners, KernelId::apply_changes,
-                                KernelId::place_pairs};
-    return std::ranges::find(all, kernel) != std::end(all);
-}
+/// By KernelId: it is left out where a device has no double.
+inline constexpr bool is_in_double[] = {
+#define RAYCONTACT_KERNEL(name) false,
+#define RAYCONTACT_CPU_KERNEL(name) false,
+#define RAYCONTACT_DOUBLE_KERNEL(name) true,
+#include "kernels/kernels.def"
+#undef RAYCONTACT_KERNEL
+#undef RAYCONTACT_CPU_KERNEL
+};
 
 // The arguments of a launch over no items.
 template <typename Function>

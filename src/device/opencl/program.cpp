@@ -8,7 +8,7 @@ namespace raycontact::opencl {
 namespace {
 
 bool is_built(KernelId id, bool has_double) {
-    return gpu::name_of(id) && (has_double || !gpu::is_in_double(id));
+    return gpu::name_of(id) && (has_double || !gpu::is_in_double[static_cast<std::size_t>(id)]);
 }
 
 bool claims_double(cl_device_id device) {
