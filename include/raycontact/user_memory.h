@@ -29,7 +29,7 @@ public:
     /// of another context, and where this version was built without OpenCL.
     static UserMemory opencl(void* queue, void* buffer, std::size_t bytes, std::size_t offset = 0);
 
-    std::size_t bytes() const noexcept;
+    std::size_t bytes() const noexcept { return bytes_; }
 
     /// Copies the first bytes; returns when they are there. Throws InputError for more than there are, and
     /// std::runtime_error where the device fails, as those below.
@@ -41,10 +41,11 @@ public:
 
     /// How one kind of memory is reached.
     class RAYCONTACT_HIDDEN Access;
-    RAYCONTACT_HIDDEN explicit UserMemory(std::shared_ptr<const Access> access);
+    RAYCONTACT_HIDDEN UserMemory(std::shared_ptr<const Access> access, std::size_t bytes);
 
 private:
     std::shared_ptr<const Access> access_;
+    std::size_t bytes_;
 };
 
 /// How poses lie in memory, one after the other; body to world, metres.

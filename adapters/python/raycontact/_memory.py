@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from . import _core
 from ._core import InputError
+from .contacts import CONTACT_DTYPE
 
 _EVERY_STREAM = 2**64 - 1
 
@@ -72,29 +73,30 @@ def to_host(value: Any, what: str) -> NDArray[Any]:
     return array
 
 
-# Types that hold the bytes of a column: signed ones, too, as not every library has others.
-_types = {
-    "bodies": ("i8", "u8"),
-    "slots": ("u4", "i4"),
-    "key": ("u8", "i8"),
-    "kind": ("u1", "i1"),
-    "source": ("u1", "i1"),
-    "indices": ("u4", "i4"),
-    "is_new": ("b1", "u1", "i1"),
-    "point_a": ("f8", "f4"),
-    "point_b": ("f8", "f4"),
-    "normal": ("f4",),
-    "depth": ("f4",),
-    "ray_length": ("f4",),
-    "weight": ("f4",),
-}
-_tails = {"bodies": (2,), "slots": (2,), "indices": (2,), "point_a": (3,), "point_b": (3,), "normal": (3,)}
+def _columns() -> dict[str, tuple[np.dtype[Any], tuple[int, ...]]]:
+    """Of each column that C++ writes: type, numbers of a contact."""
+    fields = [(name, CONTACT_DTYPE[name]) for name in CONTACT_DTYPE.names or ()]
+    return {name: (field.base, field.shape) for name, field in fields} | {
+        "slots": (np.dtype("u4"), (2,)),
+        "key": (np.dtype("u8"), ()),
+    }
+
+
+_COLUMNS = _columns()
+
+
+def _holds(given: np.dtype[Any], wanted: np.dtype[Any]) -> bool:
+    """Whole numbers and answers by their size: not every library has unsigned ones. Points in float32, too."""
+    if wanted.kind == "f":
+        return given == wanted or (wanted == np.float64 and given == np.float32)
+    return given.kind in "iub" and given.itemsize == wanted.itemsize and given.isnative
 
 
 def as_column(name: str, value: Any) -> tuple[str, bool, int, int, int, bool]:
     """What the C++ half takes: name, on CUDA, address, bytes, stream, in float32."""
-    if name not in _types:
-        raise InputError(f"contacts have no column {name!r}; choose from {', '.join(_types)}")
+    if name not in _COLUMNS:
+        raise InputError(f"contacts have no column {name!r}; choose from {', '.join(_COLUMNS)}")
+    wanted, tail = _COLUMNS[name]
     memory: Optional[_Stretch] = None
     if is_on_cuda(value):
         memory = _on_cuda(value, name)
@@ -104,15 +106,13 @@ def as_column(name: str, value: Any) -> tuple[str, bool, int, int, int, bool]:
         memory = _Stretch(False, value.ctypes.data, value.shape, value.dtype, 0, not value.flags.writeable)
     if memory is None:
         raise InputError(f"{name}: is no NumPy array, and has no __cuda_array_interface__")
-    wanted = [np.dtype(code) for code in _types[name]]
-    if memory.dtype not in wanted:
-        raise InputError(f"{name}: holds {memory.dtype.name}; give {' or '.join(one.name for one in wanted)}")
-    tail = _tails.get(name, ())
+    if not _holds(memory.dtype, wanted):
+        raise InputError(f"{name}: holds {memory.dtype.name}; give {wanted.name}")
     if len(memory.shape) != 1 + len(tail) or memory.shape[1:] != tail:
         raise InputError(
             f"{name}: has shape {memory.shape}; give (rows{''.join(f', {n}' for n in tail)}{'' if tail else ','})"
         )
     if memory.read_only:
         raise InputError(f"{name}: is read-only")
-    single = name.startswith("point_") and memory.dtype == np.float32
+    single = wanted == np.float64 and memory.dtype == np.float32
     return name, memory.is_cuda, memory.address, memory.bytes, memory.stream, single

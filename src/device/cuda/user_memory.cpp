@@ -24,12 +24,10 @@ DeviceNumber device_of(Address address) {
 // Copies wait for each other in the caller's stream.
 class Stretch : public UserMemory::Access {
 public:
-    Stretch(Address address, std::size_t bytes, void* stream)
-        : context_(device_of(address)), address_(address), bytes_(bytes),
-          waits_for_all_(stream == UserMemory::every_stream()),
+    Stretch(Address address, void* stream)
+        : context_(device_of(address)), address_(address), waits_for_all_(stream == UserMemory::every_stream()),
           stream_(waits_for_all_ ? nullptr : static_cast<StreamHandle>(stream)) {}
 
-    std::size_t bytes() const override { return bytes_; }
     void read(std::span<std::byte> to) const override {
         const Current current(context_);
         wait_for_all();
@@ -52,15 +50,14 @@ private:
 
     PrimaryContext context_;
     Address address_;
-    std::size_t bytes_;
     bool waits_for_all_;
     StreamHandle stream_;
 };
 
 } // namespace
 
-std::shared_ptr<const UserMemory::Access> user_memory(std::uint64_t address, std::size_t bytes, void* stream) {
-    return std::make_shared<Stretch>(address, bytes, stream);
+std::shared_ptr<const UserMemory::Access> user_memory(std::uint64_t address, void* stream) {
+    return std::make_shared<Stretch>(address, stream);
 }
 
 } // namespace raycontact::cuda

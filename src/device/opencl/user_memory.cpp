@@ -10,8 +10,7 @@ namespace {
 
 class Stretch : public UserMemory::Access {
 public:
-    Stretch(cl_command_queue queue, cl_mem buffer, std::size_t bytes, std::size_t offset)
-        : bytes_(bytes), offset_(offset) {
+    Stretch(cl_command_queue queue, cl_mem buffer, std::size_t bytes, std::size_t offset) : offset_(offset) {
         const std::string named = "memory of an OpenCL buffer: ";
         cl_context of_queue = nullptr, of_buffer = nullptr;
         std::size_t size = 0;
@@ -32,7 +31,6 @@ public:
         buffer_.reset(buffer);
     }
 
-    std::size_t bytes() const override { return bytes_; }
     void read(std::span<std::byte> to) const override {
         check(clEnqueueReadBuffer(queue_.get(), buffer_.get(), CL_FALSE, offset_, to.size(), to.data(), 0, nullptr,
                                   nullptr),
@@ -48,7 +46,7 @@ public:
 private:
     CommandQueue queue_;
     Memory buffer_;
-    std::size_t bytes_, offset_;
+    std::size_t offset_;
 };
 
 } // namespace

@@ -3,6 +3,8 @@
 #include <raycontact/scene.h>
 
 #include <cstdio>
+#include <span>
+#include <vector>
 
 int main() {
     raycontact::Mesh cube;
@@ -20,5 +22,10 @@ int main() {
                     static_cast<double>(contact.depth), static_cast<double>(contact.normal.x),
                     static_cast<double>(contact.normal.y), static_cast<double>(contact.normal.z));
     }
-    return scene.contacts().size() == 4 ? 0 : 1; // a corner in each cube, and twice two edges beside them that pass
+    // The same into arrays of one's own; of a GPU by UserMemory::cuda() or opencl().
+    std::vector<float> depths(100);
+    const raycontact::ContactOutput column{raycontact::ContactColumn::depth,
+                                           raycontact::UserMemory::host(std::as_writable_bytes(std::span(depths)))};
+    const bool written = scene.write_contacts({&column, 1}) == 4 && depths[3] == scene.contacts()[3].depth;
+    return written ? 0 : 1; // a corner in each cube, and twice two edges beside them that pass
 }
