@@ -10,7 +10,7 @@ namespace raycontact {
 
 namespace {
 
-// Milliseconds. Opening a CUDA device takes about as long once its kernels are compiled: a scene that ends before would
+// Milliseconds. Opening a GPU takes about as long once its kernels are compiled: a scene that ends before would
 // never get it back.
 constexpr double opening = 200;
 // Milliseconds. On a GPU a step is a dozen launches and a read that waits, some 10 us each, however few its pairs are.
