@@ -116,6 +116,8 @@ Result simulate(const Work& work, std::uint32_t copies, const std::vector<double
         for (const auto& [a, b] : step.pairs) slots = std::max(slots, b + 1);
     double all_speeds = 0, ideal = 0, slowest = 0, moved = 0, opened = 0;
     for (const double speed : speeds) all_speeds += speed;
+    OpenPairs pairs;
+    Executor executor(1);
     std::vector<SlotPair> last_pairs;
     std::vector<std::size_t> last_parts;
     std::vector<Contact> last_contacts;
@@ -123,16 +125,20 @@ Result simulate(const Work& work, std::uint32_t copies, const std::vector<double
         const Step step = copied(recorded, copies, slots);
         const std::size_t count = step.pairs.size();
         std::vector<std::size_t> parts(count);
-        assignment.assign(step.pairs, balance);
+        pairs.set_all(executor, step.pairs);
+        assignment.assign(pairs, balance);
         for (std::size_t m = 0; how == "balanced" && m + 1 < devices; ++m) {
             const auto move = balance.next_move();
             if (!move) break;
-            const auto moving = choose_moving(assignment.pairs_of(move->from), last_contacts, move->share);
-            assignment.move(moving.pairs, move->to);
-            assignment.make_lists();
+            auto moving = choose_moving(assignment.all_on(move->from), last_contacts, move->share);
+            assignment.move(moving.pairs, move->from, move->to);
             balance.record_move({move->from, move->to, moving.share}, 0);
         }
-        for (std::size_t i = 0; i < count; ++i) parts[i] = how == "free" ? i * devices / count : assignment.part_of(i);
+        const std::vector<std::uint32_t>& pair_slots = pairs.all(executor).slots;
+        for (std::size_t i = 0; i < count; ++i)
+            parts[i] = how == "free" ? i * devices / count : assignment.part_of(pair_slots[i]);
+        assignment.step_done();
+        pairs.step_done();
 
         std::vector<double> load(devices), ms(devices);
         for (std::size_t i = 0; i < count; ++i) {

@@ -82,8 +82,8 @@ class Contender {
 public:
     Contender(Executor& executor, std::string_view instruction_set, const std::shared_ptr<const Shape>& shape,
               std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs)
-        : executor_(executor), device_(cpu::open(executor, instruction_set)), store_(device_), bodies_(bodies),
-          pairs_(pairs) {
+        : executor_(executor), device_(cpu::open(executor, instruction_set)), store_(device_), bodies_(bodies) {
+        for (const SlotPair& pair : pairs) pairs_.open(pair);
         store_.add(shape);
         settings_.paper.skip_outside = false; // every ray of the rule
         standard_.begin(update(), batch_);
@@ -119,7 +119,7 @@ private:
         device_.cast_ms = 0;
         return milliseconds([&] { standard_.cast(update(), batch_); });
     }
-    Update update() { return {device_, executor_, store_, bodies_, moved_, pairs_, motion_, settings_}; }
+    Update update() { return {device_, executor_, store_, bodies_, moved_, pairs_, {}, {}, motion_, settings_}; }
 
     template <typename T>
     std::vector<T> read(const Array<T>& array, std::size_t count) {
@@ -136,8 +136,8 @@ private:
     CastClock device_;
     ShapeStore store_;
     std::span<const PlacedBody> bodies_;
-    std::span<const SlotPair> pairs_;
-    MovedBodies moved_;
+    PairSlots pairs_;
+    SlotChanges moved_;
     Motion motion_;
     Settings settings_;
     StandardRays standard_;

@@ -32,8 +32,8 @@ public:
                                    const Settings& settings, std::size_t known);
 
 private:
-    MovedBodies moved_;
-    MovedBodies::Seen seen_ = 0;
+    SlotChanges moved_;
+    SlotChanges::Seen seen_ = 0;
     float reach_ = -1;             ///< WorldBoxes::reach() in the last call
     std::vector<BodySlot> listed_; ///< those that moved
     std::vector<char> is_other_;   ///< of those: the extent is

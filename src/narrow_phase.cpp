@@ -2,6 +2,8 @@
 #include "narrow_phase.h"
 
 #include "device/device.h"
+#include "executor/row_slices.h"
+#include "free_all.h"
 #include "platform/system.h"
 #include "schedule/moving_pairs.h"
 
@@ -50,6 +52,7 @@ void NarrowPhase::set_settings(const Settings& settings) {
     if (choice_ && cost(settings) != cost(settings_)) choice_->forget();
     settings_ = settings;
     parts_.forget();
+    seen_ = 0;
 }
 
 std::string NarrowPhase::device_choice() const {
@@ -65,13 +68,40 @@ void NarrowPhase::wake() {
     if (parts_.has(in_use_)) parts_[in_use_].executor().wake();
 }
 
-void NarrowPhase::step(std::span<const PlacedBody> bodies, const MovedBodies& moved, std::span<const SlotPair> pairs,
-                       std::vector<Contact>& contacts, StepStats& stats, double broad_ms) {
+void NarrowPhase::drop_contacts() noexcept {
+    contacts_.clear();
+    left_out_.clear();
+    seen_ = 0;
+}
+
+// Where most bodies move, hardly a pair has what it had. A number of contacts that all pairs share is given to all
+// anew.
+bool NarrowPhase::asks_few(const SlotChanges& moved, std::size_t bodies) {
+    if (!moved.is_next(seen_) || moved.list().size() >= bodies / 4 || settings_.max_contacts != 0) return false;
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+        if (has_pairs(i) && parts_[i].answers(settings_) != Answers::some) return false;
+    return true;
+}
+
+const PairList& NarrowPhase::list_asked(const SlotChanges& moved, OpenPairs& pairs) {
+    bool lists = false;
+    for (std::size_t i = 0; i < parts_.size(); ++i)
+        if (has_pairs(i) && parts_[i].answers(settings_) != Answers::all) lists = true;
+    if (!few_ && lists) return pairs.all(parts_.executor());
+    asked_.resize(0);
+    if (few_) pairs.list_of(parts_.executor(), moved, asked_);
+    return asked_;
+}
+
+void NarrowPhase::step(std::span<const PlacedBody> bodies, const SlotChanges& moved, OpenPairs& pairs,
+                       StepStats& stats, double broad_ms) {
     const auto start = Clock::now();
     std::vector<DeviceWork> work = std::move(stats.details.work); // to reuse its memory
     stats = {};
     stats.details.work = std::move(work);
     stats.broad_ms = broad_ms;
+    prepare();
+    Executor& executor = parts_.executor();
     try {
         if (const auto lost = parts_.take_lost(); !lost.empty()) give_away(lost, stats);
         assignment_.assign(pairs, balance_);
@@ -80,41 +110,44 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, const MovedBodies& mo
             const auto move = balance_.next_move();
             if (!move || !move_pairs(*move, bodies, stats)) break;
         }
-        const bool alone = parts_.left() == 1;
-        const auto has_all = [&](std::size_t part) { return alone || (choice_ && part == in_use_); };
-        auto failed = parts_.run(
-            [&](std::size_t part) { find(part, bodies, moved, has_all(part) ? contacts : found_[part].contacts); });
-        const bool shared = !alone && (!choice_ || std::ranges::find(failed, in_use_) != failed.end());
+        few_ = asks_few(moved, bodies.size());
+        assignment_.ask(list_asked(moved, pairs));
+        auto failed = parts_.run([&](std::size_t part) { find(part, bodies, moved); });
+        assignment_.step_done();
         while (!failed.empty()) failed = replace(failed, stats);
-        if (shared) merge(contacts);
-        reducer_.run(parts_.executor(), settings_, bodies, changes_, contacts);
-        changes_.mark(parts_.executor(), contacts);
+        merge();
+        const ContactStore::Asked asked{!few_, asked_.pairs, pairs.closed()};
+        reducer_.run(executor, settings_, bodies, contacts_, merged_);
+        stats.details.contacts_merged = reducer_.merged();
+        contacts_.replace(executor, asked, merged_);
+        if (!left_out_.all().empty() || !reducer_.left_out().empty())
+            left_out_.replace(executor, asked, reducer_.left_out());
+        seen_ = moved.now();
     } catch (...) {
         parts_.forget(); // the step failed half-way: what it kept may be wrong
-        contacts.clear();
-        reducer_.clear();
+        assignment_.forget();
+        pairs.forget();
+        drop_contacts();
         throw;
     }
 
-    count(pairs.size(), stats);
-    stats.contacts_reduced = reducer_.left_out().size();
-    stats.details.contacts_merged = reducer_.merged();
-    const Changes::Sums& sums = changes_.sums();
+    count(pairs.slots().count(), stats);
+    const ContactStore::Sums& sums = contacts_.sums();
+    stats.contacts_reduced = left_out_.all().size();
     stats.contacts_new = sums.fresh;
-    stats.contacts_lost = changes_.lost().size();
+    stats.contacts_lost = contacts_.lost().size();
     stats.contacts_speculative = sums.speculative;
-    stats.contacts = contacts.size() - sums.speculative;
+    stats.contacts = contacts_.all().size() - sums.speculative;
     stats.details.ray_length = sums.ray_length;
-    stats.depth_max = sums.depth_max;
-    for (const Contact& contact : reducer_.left_out())
-        stats.depth_max = std::max(stats.depth_max, double(contact.depth));
-    trim(stats.pair_bytes, contacts);
+    stats.depth_max = std::max(sums.depth_max, left_out_.sums().depth_max);
+    trim(stats.pair_bytes);
     stats.narrow_ms = milliseconds_since(start);
 }
 
 void NarrowPhase::rest(StepStats& stats) {
     const auto start = Clock::now();
-    changes_.rest();
+    prepare();
+    contacts_.rest(parts_.executor());
     stats.contacts_new = stats.contacts_lost = stats.devices_lost = 0;
     stats.warnings.clear();
     StepDetails& details = stats.details;
@@ -127,7 +160,7 @@ void NarrowPhase::rest(StepStats& stats) {
 // Once much less is kept for pairs than was, what a step makes anew is freed as well. The allocator keeps what was
 // freed in small pieces: it goes back to the system, and again after the next step, which frees the lists of what was
 // lost.
-void NarrowPhase::trim(std::uint64_t pair_bytes, std::vector<Contact>& contacts) {
+void NarrowPhase::trim(std::uint64_t pair_bytes) {
     constexpr std::uint64_t much = 16 << 20;
     most_bytes_ = std::max(most_bytes_, pair_bytes);
     if (most_bytes_ > 2 * pair_bytes + much) {
@@ -140,31 +173,34 @@ void NarrowPhase::trim(std::uint64_t pair_bytes, std::vector<Contact>& contacts)
     for (std::size_t i = 0; i < parts_.size(); ++i)
         if (parts_.has(i)) parts_[i].trim();
     for (Found& found : found_) found.contacts.shrink_to_fit();
-    changes_.trim();
+    free_all(merged_);
     reducer_.trim();
-    contacts.shrink_to_fit();
+    contacts_.trim();
+    left_out_.trim();
     platform::trim_heap();
 }
 
-void NarrowPhase::find(std::size_t number, std::span<const PlacedBody> bodies, const MovedBodies& moved,
-                       std::vector<Contact>& contacts) {
+void NarrowPhase::find(std::size_t number, std::span<const PlacedBody> bodies, const SlotChanges& moved) {
     const auto start = Clock::now();
     Part& part = parts_[number];
     const Pin pin(part.executor().core());
-    part.begin(bodies, moved, assignment_.pairs_of(number), settings_);
-    part.end(contacts);
+    const PairList& asked = assignment_.asked_of(number);
+    part.begin(bodies, moved, {assignment_.open_on(number), asked.pairs, asked.slots}, settings_);
+    part.end(found_[number].contacts);
     found_[number].ms = milliseconds_since(start);
 }
 
 // The others cast the pairs of failed parts in full. Returns the parts that failed in doing so.
 std::vector<std::size_t> NarrowPhase::replace(const std::vector<std::size_t>& failed, StepStats& stats) {
-    const auto given = give_away(failed, stats);
+    auto given = give_away(failed, stats);
+    if (few_)
+        for (PairList& list : given) list.keep_only(asked_.pairs);
     return parts_.run([&](std::size_t number) {
-        if (!given[number].empty()) parts_[number].take_over(given[number], found_[number].contacts);
+        if (given[number].size() > 0) parts_[number].take_over(given[number], found_[number].contacts);
     });
 }
 
-std::vector<std::vector<SlotPair>> NarrowPhase::give_away(const std::vector<std::size_t>& failed, StepStats& stats) {
+std::vector<PairList> NarrowPhase::give_away(const std::vector<std::size_t>& failed, StepStats& stats) {
     stats.devices_lost += failed.size();
     for (const std::size_t part : failed) {
         balance_.drop(part);
@@ -211,22 +247,28 @@ void NarrowPhase::open_other() {
 // A part that fails here has failed before the step: its pairs are new to the others.
 bool NarrowPhase::move_pairs(const Balance::Move& move, std::span<const PlacedBody> bodies, StepStats& stats) {
     const auto start = Clock::now();
-    const auto moving = choose_moving(assignment_.pairs_of(move.from), found_[move.from].contacts, move.share);
+    auto [moving, share] = choose_moving(assignment_.all_on(move.from), contacts_.all(), move.share);
     std::vector<std::byte> state;
-    auto failed = parts_.only(move.from, [&] { state = parts_[move.from].export_state(bodies, moving.pairs); });
-    if (failed.empty()) failed = parts_.only(move.to, [&] { parts_[move.to].import_state(bodies, state); });
+    auto failed = parts_.only(move.from, [&] { state = parts_[move.from].export_state(bodies, moving); });
     if (failed.empty()) {
-        assignment_.move(moving.pairs, move.to);
-        stats.details.pairs_moved += moving.pairs.size();
+        assignment_.move(moving, move.from, move.to);
+        failed = parts_.only(move.to, [&] { parts_[move.to].import_state(bodies, moving, state); });
+        if (!failed.empty()) { // they stay, as they are
+            assignment_.move(moving, move.to, move.from);
+            const auto more = parts_.only(move.from, [&] { parts_[move.from].import_state(bodies, moving, state); });
+            failed.insert(failed.end(), more.begin(), more.end());
+        }
+    }
+    if (failed.empty()) {
+        stats.details.pairs_moved += moving.size();
         stats.details.bytes_moved += state.size();
         const double ms = milliseconds_since(start);
-        balance_.record_move({move.from, move.to, moving.share}, ms);
+        balance_.record_move({move.from, move.to, share}, ms);
         if (choice_) choice_->record_move(ms);
     } else {
         give_away(failed, stats);
     }
-    assignment_.make_lists();
-    return failed.empty() && !moving.pairs.empty();
+    return failed.empty() && moving.size() > 0;
 }
 
 std::vector<KeptRay> NarrowPhase::kept_rays(std::span<const PlacedBody> bodies) {
@@ -236,21 +278,34 @@ std::vector<KeptRay> NarrowPhase::kept_rays(std::span<const PlacedBody> bodies) 
     return rays;
 }
 
-// Each part has the contacts of its own pairs, in order.
-void NarrowPhase::merge(std::vector<Contact>& contacts) {
-    contacts.clear();
-    rest_.clear();
-    for (const Found& found : found_)
-        if (!found.contacts.empty()) rest_.emplace_back(found.contacts);
-    while (!rest_.empty()) {
-        std::span<const Contact>& first =
-            *std::ranges::min_element(rest_, {}, [](const auto& own) { return pair_of(own.front()); });
-        const SlotPair pair = pair_of(first.front());
-        std::size_t count = 1;
-        while (count < first.size() && pair_of(first[count]) == pair) ++count;
-        contacts.insert(contacts.end(), first.begin(), first.begin() + static_cast<std::ptrdiff_t>(count));
-        first = first.subspan(count);
-        if (first.empty()) rest_.erase(rest_.begin() + (&first - rest_.data()));
+// Each part has the contacts of its own pairs, in order: those of a pair come behind all of pairs before it, on any
+// part.
+void NarrowPhase::merge() {
+    std::size_t count = 0, parts = 0, any = 0;
+    for (std::size_t i = 0; i < found_.size(); ++i) {
+        count += found_[i].contacts.size();
+        if (found_[i].contacts.empty()) continue;
+        any = i;
+        ++parts;
+    }
+    merged_.resize(0);
+    if (parts == 1) return merged_.swap(found_[any].contacts);
+    merged_.resize(count);
+    for (std::size_t part = 0; part < found_.size(); ++part) {
+        const std::vector<Contact>& own = found_[part].contacts;
+        const auto belongs = [&](std::size_t i) { return pair_of(own[i]) == pair_of(own[i - 1]); };
+        RowSlices{own.size()}.each_row(parts_.executor(), belongs, [&](std::size_t begin, std::size_t end) {
+            if (begin == end) return;
+            std::size_t to = begin;
+            for (std::size_t other = 0; other < found_.size(); ++other) {
+                const std::vector<Contact>& others = found_[other].contacts;
+                if (other != part)
+                    to += static_cast<std::size_t>(std::ranges::lower_bound(others, pair_of(own[begin]), {}, pair_of)
+                                                   - others.begin());
+            }
+            std::copy(own.begin() + std::ptrdiff_t(begin), own.begin() + std::ptrdiff_t(end),
+                      merged_.begin() + std::ptrdiff_t(to));
+        });
     }
 }
 

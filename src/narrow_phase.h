@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "contacts/changes.h"
+#include "contacts/contact_store.h"
 #include "contacts/reduce.h"
 #include "part/parts.h"
 #include "schedule/assignment.h"
@@ -34,19 +34,28 @@ public:
     /// Forgets what the last method kept.
     void set_settings(const Settings& settings);
 
-    /// pairs: sorted, without duplicates, indices into bodies. Fills contacts and stats. broad_ms: milliseconds
-    /// that it took to find the pairs.
-    void step(std::span<const PlacedBody> bodies, const MovedBodies& moved, std::span<const SlotPair> pairs,
-              std::vector<Contact>& contacts, StepStats& stats, double broad_ms = 0);
+    /// Of the last step.
+    const ContactStore& contacts() const { return contacts_; }
+    /// Before a step, so that drop_contacts() cannot fail.
+    void prepare() {
+        contacts_.prepare();
+        left_out_.prepare();
+    }
+    /// A step that failed has no contacts. Its pairs begin anew.
+    void drop_contacts() noexcept;
+
+    /// pairs: their changes are those since the last step. Fills stats. broad_ms: milliseconds that it took to find the
+    /// pairs.
+    void step(std::span<const PlacedBody> bodies, const SlotChanges& moved, OpenPairs& pairs, StepStats& stats,
+              double broad_ms = 0);
     /// A step in which nothing has moved since the last, for a method that then finds what it found: contacts stay.
     void rest(StepStats& stats);
     /// The rays that the methods keep for the next step, in any order; bodies as in the last step.
     std::vector<KeptRay> kept_rays(std::span<const PlacedBody> bodies);
     /// Whether the last step freed memory, since much less of it is in use than was.
     bool trimmed() const { return trimmed_; }
-    std::span<const LostContact> lost_contacts() const { return changes_.lost(); }
     /// Contacts of the last step that the settings leave out.
-    std::span<const Contact> left_out() const { return reducer_.left_out(); }
+    std::span<const Contact> left_out() const { return left_out_.all(); }
 
 private:
     /// What a part found in a step.
@@ -54,16 +63,19 @@ private:
         std::vector<Contact> contacts;
         double ms = 0;
     };
+    /// Whether a part can have pairs in this step.
+    bool has_pairs(std::size_t part) const { return parts_.has(part) && (!choice_ || part == in_use_); }
+    bool asks_few(const SlotChanges& moved, std::size_t bodies);
+    const PairList& list_asked(const SlotChanges& moved, OpenPairs& pairs);
     void choose_device(std::span<const PlacedBody> bodies, StepStats& stats);
     void open_other();
     bool move_pairs(const Balance::Move& move, std::span<const PlacedBody> bodies, StepStats& stats);
-    void find(std::size_t part, std::span<const PlacedBody> bodies, const MovedBodies& moved,
-              std::vector<Contact>& contacts);
+    void find(std::size_t part, std::span<const PlacedBody> bodies, const SlotChanges& moved);
     std::vector<std::size_t> replace(const std::vector<std::size_t>& failed, StepStats& stats);
-    std::vector<std::vector<SlotPair>> give_away(const std::vector<std::size_t>& failed, StepStats& stats);
-    void merge(std::vector<Contact>& contacts);
+    std::vector<PairList> give_away(const std::vector<std::size_t>& failed, StepStats& stats);
+    void merge();
     void count(std::size_t pair_count, StepStats& stats);
-    void trim(std::uint64_t pair_bytes, std::vector<Contact>& contacts);
+    void trim(std::uint64_t pair_bytes);
 
     Settings settings_;
     Parts parts_;
@@ -72,10 +84,13 @@ private:
     Opener open_other_; ///< empty once it was asked
     std::optional<DeviceChoice> choice_;
     std::size_t in_use_ = 0;                     ///< with a choice: the part that has all pairs
-    std::vector<Found> found_;                   ///< by part; without contacts once it is dropped
-    std::vector<std::span<const Contact>> rest_; ///< still to be merged
+    std::vector<Found> found_; ///< by part; without contacts once it is dropped
+    std::vector<Contact> merged_;
+    SlotChanges::Seen seen_ = 0; ///< the last step: SlotChanges of bodies
+    bool few_ = false;           ///< only pairs that may have changed are asked about
+    PairList asked_;             ///< those
     ContactReducer reducer_;
-    Changes changes_;
+    ContactStore contacts_, left_out_;
     std::uint64_t most_bytes_ = 0; ///< StepStats::pair_bytes, the most since memory was last trimmed
     unsigned trims_ = 0;           ///< still to be done, one a step
     bool trimmed_ = false;         ///< in the last step

@@ -34,7 +34,7 @@ void NextPoses::set(BodySlot body, std::uint32_t generation, const Pose& pose) {
     given_[body] = {pose, generation, true};
 }
 
-std::span<const Pose> NextPoses::update(Executor& executor, std::span<const PlacedBody> bodies, MovedBodies& moved) {
+std::span<const Pose> NextPoses::update(Executor& executor, std::span<const PlacedBody> bodies, SlotChanges& moved) {
     given_.resize(bodies.size());
     last_.resize(bodies.size());
     next_.resize(bodies.size());

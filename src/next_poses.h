@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "moved_bodies.h"
+#include "slot_changes.h"
 #include "pairs/directed_pairs.h"
 
 #include <span>
@@ -17,7 +17,7 @@ public:
     void set(BodySlot body, std::uint32_t generation, const Pose& pose);
     /// First in a step. Of the body frames, by slot; those of slots without a body mean nothing. Marks the bodies that
     /// are expected elsewhere than at the last step.
-    std::span<const Pose> update(Executor& executor, std::span<const PlacedBody> bodies, MovedBodies& moved);
+    std::span<const Pose> update(Executor& executor, std::span<const PlacedBody> bodies, SlotChanges& moved);
     /// Last in a step.
     void step_done(Executor& executor, std::span<const PlacedBody> bodies);
     void forget();

@@ -8,7 +8,7 @@
 #include "contacts/predictions.h"
 #include "executor/float_environment.h"
 #include "free_all.h"
-#include "moved_bodies.h"
+#include "slot_changes.h"
 #include "narrow_phase.h"
 #include "next_poses.h"
 #include "pose_fault.h"
@@ -45,21 +45,6 @@ void refuse_faulty(const Pose& pose, BodyId body) {
 // Their walks begin where a full test found something, and what a test finds depends on the grids.
 bool follows_rays(Method method) {
     return method == Method::iterative || method == Method::predictive;
-}
-
-bool by_slots(const Pair& p, const Pair& q) {
-    return SlotPair(p.first.slot, p.second.slot) < SlotPair(q.first.slot, q.second.slot);
-}
-
-/// Both are sorted.
-bool share_a_pair(std::span<const Pair> p, std::span<const Pair> q) {
-    for (auto at_p = p.begin(), at_q = q.begin(); at_p != p.end() && at_q != q.end();) {
-        if (*at_p == *at_q) return true;
-        const bool before = by_slots(*at_p, *at_q);
-        if (before || !by_slots(*at_q, *at_p)) ++at_p;
-        if (!before) ++at_q;
-    }
-    return false;
 }
 
 } // namespace
@@ -142,40 +127,41 @@ struct Scene::State {
             if (body.shape != nullptr) body.shape->prepare(narrow.settings().execution.threads);
     }
 
-    // Once a shape meets others in a second step, more steps are likely to come; not so where no pair is there again,
-    // as in a search of pairs that are asked about once. Without memory or threads for it, they come without.
+    // Once a shape has met others in one step, more steps are likely to come in the next; not so where no pair is there
+    // again, as in a search of pairs that are asked about once. Without memory or threads for it, they come without.
     void want_shapes() {
         if (narrow.parts().plain_shapes() == 0) return met_shapes.clear();
-        if (steps_met > 0 && pairs_changed && !share_a_pair(last_pairs, pairs)) return;
+        if (steps_met > 0 && pairs.slots().count() > 0 && pairs.count_kept() == 0) return;
         ++steps_met;
         try {
-            for (const SlotPair& pair : slot_pairs)
-                for (const BodySlot slot : {pair.first, pair.second})
-                    if (!bodies[slot].shape->is_prepared()) meet(*bodies[slot].shape);
+            for (auto& [shape, first] : met_shapes) {
+                if (first >= steps_met) continue; // wanted already
+                preparer.want(shape->shared_from_this());
+                first = wanted;
+            }
+            for (const std::uint32_t pair : pairs.slots().changes().list()) {
+                if (!pairs.slots().is_open(pair)) continue;
+                const auto [a, b] = pairs.slots()[pair];
+                for (const BodySlot slot : {a, b})
+                    if (!bodies[slot].shape->is_prepared()) met_shapes.try_emplace(bodies[slot].shape, steps_met);
+            }
         } catch (const std::exception&) {
         }
     }
 
-    void meet(const Shape& shape) {
-        std::uint64_t& first = met_shapes.try_emplace(&shape, steps_met).first->second;
-        if (first >= steps_met) return; // met for the first time, or wanted already
-        preparer.want(shape.shared_from_this());
-        first = wanted;
-    }
-
     void find_pairs() {
+        given_stand = false;
         if (!find_pairs_on_device()) find_pairs_on_host();
-        pairs_stand = true;
     }
 
     void find_pairs_on_host() {
         Executor& executor = narrow.parts().executor();
         world.update(executor, bodies, next, narrow.settings());
         const BroadPhaseInput input{world.boxes(), filters};
-        const bool stood = std::exchange(found_by, Finder::none) == Finder::host && !world.is_resized();
-        pairs_stand = false; // until the lists are whole again
-        if (!stood) broad_phase.find(executor, world.tree(), input, slot_pairs);
-        if (!stood || broad_phase.update(executor, world.tree(), input, world.changed(), slot_pairs)) name_pairs();
+        if (std::exchange(found_by, Finder::none) != Finder::host || world.is_resized())
+            pairs.set_all(executor, broad_phase.find(executor, world.tree(), input));
+        else
+            broad_phase.update(executor, world.tree(), input, world.changed(), pairs);
         world.accept();
         found_by = Finder::host;
     }
@@ -189,12 +175,10 @@ struct Scene::State {
             const DeviceBroadPhase::Changes changes = box_changes.list(parts.executor(), bodies, next, filters, world,
                                                                        narrow.settings(), parts[first].known_slots());
             const bool stood = std::exchange(found_by, Finder::none) == Finder::device;
-            pairs_stand = false; // until the lists are whole again
-            bool others = false;
-            const auto find = [&] { others = parts[first].find_pairs(changes, slot_pairs); };
+            const auto find = [&] { parts[first].find_pairs(changes, found_pairs); };
             if (!(stood && changes.moved.empty()) && !parts.before_step(first, find)) continue;
             if (!parts[first].can_find_pairs()) return false;
-            if (!stood || others) name_pairs();
+            pairs.set_all(parts.executor(), found_pairs);
             found_by = Finder::device;
             return true;
         }
@@ -206,12 +190,18 @@ struct Scene::State {
         if (!world.is_up_to_date()) world.update(narrow.parts().executor(), bodies, next, narrow.settings());
     }
 
-    void name_pairs() {
-        keep_pairs();
-        pairs.resize(slot_pairs.size());
-        narrow.parts().executor().each(pairs.size(), 4096, [&](std::uint32_t i) {
-            pairs[i] = {slots.id_in(slot_pairs[i].first), slots.id_in(slot_pairs[i].second)};
-        });
+    /// The open pairs by id, as they are asked for.
+    std::span<const Pair> name_pairs() {
+        const std::lock_guard lock(refreshing);
+        Executor& executor = narrow.parts().executor();
+        const std::vector<SlotPair>& all = pairs.all(executor).pairs;
+        if (!names_stand) named.resize(all.size());
+        if (!names_stand)
+            executor.each(all.size(), 4096, [&](std::uint32_t i) {
+                named[i] = {slots.id_in(all[i].first), slots.id_in(all[i].second)};
+            });
+        names_stand = true;
+        return named;
     }
 
     void check_pair(const Pair& pair, std::size_t i) const {
@@ -223,9 +213,9 @@ struct Scene::State {
                              + " is paired with itself; pairs need two bodies");
     }
 
-    // given: in any order, the two bodies of a pair either way round, duplicates allowed.
-    void set_pairs(std::span<const Pair> given) {
-        if (pairs_stand && std::equal(given.begin(), given.end(), pairs.begin(), pairs.end())) return;
+    // given: in any order, the two bodies of a pair either way round, duplicates allowed. False: those that are open.
+    bool read_pairs(std::span<const Pair> given) {
+        if (given_stand && std::ranges::equal(given, last_given)) return false;
         Executor& executor = narrow.parts().executor();
         std::atomic<bool> faulty = false;
         given_pairs.resize(given.size());
@@ -235,54 +225,56 @@ struct Scene::State {
             given_pairs[i] = std::minmax(a.slot, b.slot);
         });
         for (std::size_t i = 0; faulty && i < given.size(); ++i) check_pair(given[i], i);
-        if (!std::is_sorted(given_pairs.begin(), given_pairs.end())) {
+        if (!std::ranges::is_sorted(given_pairs)) {
             sorter.run(executor, bodies.size(), given_pairs, sorted);
             given_pairs.swap(sorted);
         }
         given_pairs.erase(std::unique(given_pairs.begin(), given_pairs.end()), given_pairs.end());
-        if (pairs_stand && given_pairs == slot_pairs) return;
-        pairs_stand = false;
-        found_by = Finder::none;
-        slot_pairs.swap(given_pairs);
-        name_pairs();
-        pairs_stand = true;
+        last_given.assign(given.begin(), given.end());
+        return true;
     }
 
-    /// Before they become others.
-    void keep_pairs() {
-        last_pairs.swap(pairs);
-        pairs_changed = true;
+    void set_pairs() {
+        found_by = Finder::none;
+        given_stand = false;
+        pairs.set_all(narrow.parts().executor(), given_pairs);
+        given_stand = true;
     }
 
     /// A step that has begun and throws has no contacts.
     template <typename FindPairs>
     void all_or_nothing(FindPairs&& find_pairs) {
-        // Somebody may hold the last contacts.
-        const auto own = contacts.use_count() > 1 ? std::make_shared<std::vector<Contact>>() : contacts;
-        std::atomic_thread_fence(std::memory_order_acquire); // after what another thread read before it let go
+        narrow.prepare();
         try {
             look_ahead();
+            if (pairs.slots().is_mostly_empty()) drop_pairs();
             const double broad_ms = find_pairs();
-            if (rests()) return rest(broad_ms, own != contacts);
-            contacts = own;
-            call_threads(slot_pairs.size());
+            if (pairs.have_changed()) names_stand = false;
+            if (rests()) return rest(broad_ms);
+            call_threads(pairs.slots().count());
             find_contacts(broad_ms);
         } catch (...) {
             narrow.parts().forget(); // slots may get other bodies before the next step
-            forget_moves();
             broad_phase.trim();
-            found_by = Finder::none;
-            contacts = own;
-            contacts->clear();
+            drop_pairs();
+            narrow.drop_contacts();
             throw;
         }
+    }
+
+    /// All begins anew.
+    void drop_pairs() noexcept {
+        forget_moves();
+        pairs.clear();
+        found_by = Finder::none;
+        given_stand = names_stand = false;
     }
 
     /// Before the broad phase.
     void look_ahead() {
         next = {};
         if (!narrow.settings().is_speculative()) return;
-        const MovedBodies::Seen now = moved.now();
+        const SlotChanges::Seen now = moved.now();
         next = next_poses.update(narrow.parts().executor(), bodies, moved);
         if (moved.now() != now) forget_boxes();
         for (const BodySlot slot : moved.list()) mark_box(slot);
@@ -296,16 +288,11 @@ struct Scene::State {
     /// Where nothing has changed since the last step, a method whose contacts follow from the poses finds what it
     /// found, but for what a device that was lost has to say.
     bool rests() {
-        return moved.is_next(stepped) && moved.list().empty() && !pairs_changed
+        return moved.is_next(stepped) && moved.list().empty() && !pairs.have_changed()
                && !follows_rays(narrow.settings().method) && !narrow.parts().has_news();
     }
 
-    /// is_held: the contacts are, by somebody else.
-    void rest(double broad_ms, bool is_held) {
-        if (some_new && is_held) contacts = std::make_shared<std::vector<Contact>>(*contacts);
-        if (some_new)
-            for (Contact& contact : *contacts) contact.is_new = false;
-        some_new = false;
+    void rest(double broad_ms) {
         narrow.rest(stats);
         stats.broad_ms = broad_ms;
         end_step();
@@ -313,12 +300,11 @@ struct Scene::State {
 
     void find_contacts(double broad_ms) {
         place_bodies();
-        narrow.step(bodies, moved, slot_pairs, *contacts, stats, broad_ms);
+        narrow.step(bodies, moved, pairs, stats, broad_ms);
         end_step();
         stepped = moved.step_done();
-        some_new = true;
         want_shapes();
-        pairs_changed = false;
+        pairs.step_done();
         cut_to_slots();
         if (narrow.trimmed()) trim();
     }
@@ -327,9 +313,9 @@ struct Scene::State {
         world.trim();
         broad_phase.trim();
         box_changes.trim();
-        pairs.shrink_to_fit();
-        free_all(last_pairs, given_pairs, sorted, sorter, columns);
-        slot_pairs.shrink_to_fit();
+        pairs.trim();
+        last_given.shrink_to_fit();
+        free_all(found_pairs, given_pairs, sorted, sorter, columns);
     }
 
     // Frees memory once less than a quarter of it is in use.
@@ -352,28 +338,27 @@ struct Scene::State {
     std::vector<PlacedBody> bodies;               ///< by slot; without a shape once removed
     std::vector<std::uint64_t> user_data;         ///< by slot
     std::vector<BroadPhaseInput::Filter> filters; ///< by slot
-    MovedBodies moved;
-    MovedBodies::Seen stepped = 0; ///< the last step that found contacts
-    bool some_new = false;         ///< contacts may say so
-    MovedBodies::Seen placed = 0;  ///< what place_bodies() has seen
+    SlotChanges moved;
+    SlotChanges::Seen stepped = 0; ///< the last step that found contacts
+    SlotChanges::Seen placed = 0;  ///< what place_bodies() has seen
     NextPoses next_poses;
     std::span<const Pose> next; ///< of the last step; empty without speculative contacts
     WorldBoxes world;
     std::mutex refreshing; ///< world
     BoxChanges box_changes;
     BroadPhase broad_phase;
-    std::vector<Pair> pairs, last_pairs;       ///< last_pairs: of the last step whose pairs were others
-    std::vector<SlotPair> slot_pairs;          ///< `pairs` by slot
-    std::vector<SlotPair> given_pairs, sorted; ///< of set_pairs()
-    PairSorter sorter;
-    std::shared_ptr<std::vector<Contact>> contacts = std::make_shared<std::vector<Contact>>();
+    OpenPairs pairs;
+    std::vector<Pair> named; ///< by id, if names_stand
+    bool names_stand = false;
+    std::vector<Pair> last_given; ///< of read_pairs()
+    bool given_stand = false;     ///< those are open, and no body of theirs has been removed
+    std::vector<SlotPair> found_pairs, given_pairs, sorted;
+    PairSorter<SlotPair> sorter;
     ContactColumnWriter columns;
     StepStats stats;
     static constexpr std::uint64_t wanted = std::numeric_limits<std::uint64_t>::max();
     std::unordered_map<const Shape*, std::uint64_t> met_shapes; ///< those not prepared: the step that first met them
     std::uint64_t steps_met = 0;
-    bool pairs_changed = false; ///< since the last step
-    bool pairs_stand = false;   ///< both lists are whole, and no body has been removed since
     /// Who found them, by the filters as they are: the host those of `world`, a device those of `box_changes`.
     enum class Finder : std::uint8_t { none, host, device } found_by = Finder::none;
     Preparer preparer; ///< last: it ends first
@@ -419,7 +404,8 @@ void Scene::remove(BodyId body) {
     s.met_shapes.erase(gone.shape); // its address may be another's soon
     gone.shape = nullptr;
     s.mark(body.slot);
-    s.pairs_stand = false;
+    s.pairs.close_all_of(body.slot);
+    s.given_stand = s.names_stand = false;
     s.slots.take_back(body.slot);
     s.cut_to_slots();
     try {
@@ -538,47 +524,51 @@ std::span<const Contact> Scene::find_contacts() {
         state_->find_pairs();
         return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     });
-    return *state_->contacts;
+    return contacts();
 }
 
 std::span<const Contact> Scene::find_contacts(std::span<const Pair> pairs) {
     const FloatEnvironment environment;
-    state_->set_pairs(pairs);
-    state_->all_or_nothing([] { return 0.0; });
-    return *state_->contacts;
+    bool others = state_->read_pairs(pairs);
+    state_->all_or_nothing([&] {
+        if (!others && !state_->given_stand) others = state_->read_pairs(pairs);
+        if (others) state_->set_pairs();
+        return 0.0;
+    });
+    return contacts();
 }
 
 std::span<const Contact> Scene::contacts() const noexcept {
-    return *state_->contacts;
+    return state_->narrow.contacts().all();
 }
 std::shared_ptr<const std::vector<Contact>> Scene::shared_contacts() const noexcept {
-    return state_->contacts;
+    return state_->narrow.contacts().shared();
 }
 std::span<const Contact> Scene::contacts(BodyId a, BodyId b) const {
     state_->existing(a, "Scene::contacts");
     state_->existing(b, "Scene::contacts");
-    const SlotPair wanted = std::minmax({a.slot, b.slot});
-    const auto first = std::ranges::lower_bound(*state_->contacts, wanted, {}, pair_of);
-    return {first, std::ranges::upper_bound(*state_->contacts, wanted, {}, pair_of)};
+    return state_->narrow.contacts().of(std::minmax({a.slot, b.slot}));
 }
 std::size_t Scene::write_contacts(std::span<const ContactOutput> columns) {
-    state_->columns.run(state_->narrow.parts().executor(), *state_->contacts, columns);
-    return state_->contacts->size();
+    state_->columns.run(state_->narrow.parts().executor(), contacts(), columns);
+    return contacts().size();
 }
 std::span<const LostContact> Scene::lost_contacts() const noexcept {
-    return state_->narrow.lost_contacts();
+    return state_->narrow.contacts().lost();
 }
 const StepStats& Scene::stats() const noexcept {
     return state_->stats;
 }
-std::span<const Pair> Scene::pairs() const noexcept {
-    return state_->pairs;
+std::span<const Pair> Scene::pairs() const {
+    return state_->name_pairs();
 }
 std::uint32_t Scene::device_of_pair(std::size_t i) const {
-    if (i >= state_->pairs.size())
-        throw InputError("Scene::device_of_pair: there is no pair " + std::to_string(i) + "; the last step had "
-                         + std::to_string(state_->pairs.size()));
-    return static_cast<std::uint32_t>(state_->narrow.assignment().part_of(i));
+    const std::size_t count = state_->name_pairs().size();
+    if (i >= count)
+        throw InputError("Scene::device_of_pair: there is no pair " + std::to_string(i) + "; there are "
+                         + std::to_string(count));
+    const std::uint32_t slot = state_->pairs.all(state_->narrow.parts().executor()).slots[i];
+    return static_cast<std::uint32_t>(state_->narrow.assignment().part_of(slot));
 }
 std::string Scene::device_choice() const {
     return state_->narrow.device_choice();
@@ -599,7 +589,7 @@ std::optional<Distance> Scene::distance(BodyId a, BodyId b, double max) const {
 }
 std::vector<Prediction> Scene::predictions() const {
     return find_predictions(state_->narrow.kept_rays(state_->bodies), state_->bodies,
-                            {{*state_->contacts, state_->narrow.left_out()}});
+                            {{contacts(), state_->narrow.left_out()}});
 }
 
 } // namespace raycontact

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "broadphase/box_tree.h"
-#include "moved_bodies.h"
+#include "slot_changes.h"
 #include "pairs/directed_pairs.h"
 
 #include <raycontact/settings.h>
@@ -57,8 +57,8 @@ private:
     void remake(Executor& executor, std::span<const PlacedBody> bodies, std::span<const Pose> next,
                 const Settings& settings);
 
-    MovedBodies moved_; ///< since the last update()
-    MovedBodies::Seen seen_ = 0;
+    SlotChanges moved_; ///< since the last update()
+    SlotChanges::Seen seen_ = 0;
     float reach_ = 0; ///< how far beyond the box of an open mesh a vertex can lie and still reach it, metres
     double rounding_ = 0;
     bool reach_known_ = true, is_resized_ = true;

@@ -42,9 +42,9 @@ void Replayer::rest(const Settings& settings) {
 void Replayer::step(std::size_t k) {
     const WorkStep& now = work_.steps[k];
     const auto count = static_cast<BodySlot>(now.poses.size());
-    pairs_.clear();
+    listed_.clear();
     for (std::uint32_t copy = 0; copy < copies_; ++copy)
-        for (const auto& [a, b] : now.pairs) pairs_.emplace_back(copy * count + a.slot, copy * count + b.slot);
+        for (const auto& [a, b] : now.pairs) listed_.emplace_back(copy * count + a.slot, copy * count + b.slot);
     const FloatEnvironment environment;
     const double start = peers::now().wall;
     narrow_.parts().wake();
@@ -53,7 +53,9 @@ void Replayer::step(std::size_t k) {
         bodies_[i].centred = centred_pose(*bodies_[i].shape, bodies_[i].pose);
     }
     moved_.forget(); // every pose is set
-    narrow_.step(bodies_, moved_, pairs_, contacts_, stats_);
+    pairs_.set_all(narrow_.parts().executor(), listed_);
+    narrow_.step(bodies_, moved_, pairs_, stats_);
+    pairs_.step_done();
     step_us_ = peers::now().wall - start;
 }
 

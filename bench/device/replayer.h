@@ -23,7 +23,7 @@ public:
     /// Poses set, contacts found.
     void step(std::size_t k);
 
-    std::span<const Contact> contacts() const { return contacts_; }
+    std::span<const Contact> contacts() const { return narrow_.contacts().all(); }
     const StepStats& stats() const { return stats_; }
     double step_us() const { return step_us_; } ///< of the last step, wall clock
 
@@ -31,10 +31,10 @@ private:
     const Work& work_;
     std::uint32_t copies_;
     NarrowPhase narrow_;
-    MovedBodies moved_;
+    SlotChanges moved_;
     std::vector<PlacedBody> bodies_;
-    std::vector<SlotPair> pairs_;
-    std::vector<Contact> contacts_;
+    std::vector<SlotPair> listed_; ///< of the step
+    OpenPairs pairs_;
     StepStats stats_;
     double step_us_ = 0;
 };

@@ -184,6 +184,7 @@ public:
         opened.device = std::move(device);
         part_ = std::make_unique<Part>(std::move(opened));
         part_->shapes().add(batch.shape);
+        pairs_.set_all(part_->executor(), batch.pairs);
     }
 
     void count() {
@@ -203,15 +204,18 @@ public:
 private:
     void step(std::span<const PlacedBody> bodies) {
         moved_.forget(); // all of them
-        part_->begin(bodies, moved_, batch_.pairs, settings_);
+        const PairList& all = pairs_.all(part_->executor());
+        part_->begin(bodies, moved_, {pairs_.slots(), all.pairs, all.slots}, settings_);
         part_->end(contacts_);
+        pairs_.step_done();
     }
 
     const Batch& batch_;
     Settings settings_;
     CallgrindDevice* device_ = nullptr; ///< the part's
     std::unique_ptr<Part> part_;
-    MovedBodies moved_;
+    SlotChanges moved_;
+    OpenPairs pairs_;
     std::vector<Contact> contacts_;
 };
 
@@ -252,23 +256,24 @@ void count_all() {
     shapes.add(small.shape);
     const Settings standard = settings(Method::standard);
     const Motion motion;
-    const MovedBodies moved;
-    const Update update{*opened.device, executor, shapes, small.steps[0], moved, small.pairs, motion, standard};
+    const SlotChanges moved;
+    PairSlots open;
+    for (const SlotPair& pair : small.pairs) open.open(pair);
+    const Update update{*opened.device, executor, shapes, small.steps[0], moved, open, {}, {}, motion, standard};
     Pipeline pipeline;
     pipeline.begin(update);
-    pipeline.end(update);
+    const Update found = pipeline.end(update);
     const auto& local = pipeline.contacts();
     Placer placer;
     std::vector<Contact> placed;
     count_host("place_contacts,standard", local.all().size(),
-               [&] { placer.run(executor, Direction::reprojected, small.steps[0], small.pairs, local, {}, placed); });
+               [&] { placer.run(executor, Direction::reprojected, small.steps[0], found.pairs, local, {}, placed); });
 
     const std::vector<Box> boxes = make_boxes(4096);
-    std::vector<SlotPair> pairs;
     count_host("broad_phase,boxes", boxes.size(), [&] {
         BoxTree tree;
         tree.build(executor, boxes);
-        BroadPhase().find(executor, tree, {boxes, {}}, pairs);
+        BroadPhase().find(executor, tree, {boxes, {}});
     });
     count_host("make_shape,knot", small.mesh.triangles.size(), [&] { Shape::make(small.mesh); });
     const auto made = Shape::make(small.mesh);

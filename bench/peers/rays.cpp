@@ -36,13 +36,13 @@ public:
         }
         moved_.forget(); // every pose is set
         pairs_.clear();
-        for (const auto& [a, b] : step.pairs) pairs_.emplace_back(a.slot, b.slot);
+        for (const auto& [a, b] : step.pairs) pairs_.open({a.slot, b.slot});
         find(false);
     }
 
 protected:
     Update update() {
-        return {*opened_.device, *opened_.executor, shapes_, bodies_, moved_, pairs_, motion_, settings_};
+        return {*opened_.device, *opened_.executor, shapes_, bodies_, moved_, pairs_, {}, {}, motion_, settings_};
     }
 
     // grid: those alone that the grids of the shapes leave. They are cast, too.
@@ -60,8 +60,8 @@ protected:
     OpenDevice opened_;
     ShapeStore shapes_;
     std::vector<PlacedBody> bodies_;
-    std::vector<SlotPair> pairs_;
-    MovedBodies moved_;
+    PairSlots pairs_;
+    SlotChanges moved_;
     Motion motion_;
     Settings settings_;
     StandardRays standard_;

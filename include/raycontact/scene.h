@@ -125,8 +125,9 @@ public:
     std::span<const LostContact> lost_contacts() const noexcept;
     /// What the last step did.
     const StepStats& stats() const noexcept;
-    /// The pairs of the last step, sorted by their slots.
-    std::span<const Pair> pairs() const noexcept;
+    /// The pairs of the last step, sorted by their slots; without those of bodies that have been removed since. Makes
+    /// the list when it is asked for; valid until the next step, add or remove.
+    std::span<const Pair> pairs() const;
     /// Which entry of StepDetails::work found the contacts of pairs()[i]. Throws InputError for another i.
     std::uint32_t device_of_pair(std::size_t i) const;
     /// Which device has the pairs, and why, for a person: with devices "auto" as "cpu: 1.2 ms a step, cuda:0 3.41 ms,

@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "broadphase/broad_phase.h"
 
-#include "executor/row_slices.h"
-
 #include <algorithm>
-#include <atomic>
 #include <bit>
-#include <numeric>
 #include <utility>
 
 namespace raycontact {
@@ -21,35 +17,30 @@ constexpr std::size_t few = 4;
 
 } // namespace
 
-void BroadPhase::find(Executor& executor, BoxTree& tree, const BroadPhaseInput& input, std::vector<SlotPair>& pairs) {
-    pairs.clear();
-    if (tree.levels() == 0) return;
+std::span<const SlotPair> BroadPhase::find(Executor& executor, BoxTree& tree, const BroadPhaseInput& input) {
+    if (tree.levels() == 0) return {};
     const Question asked{tree, input};
     run(executor, tree.level(0).size(), [&](Found& found, std::uint32_t node) { meet(found, asked, node); });
     std::uint64_t tests = 0;
     for (const Found& found : found_) tests += found.tests;
     if (std::exchange(sorts_when_found_, tree.sorts()) != tree.sorts()) tests_when_sorted_ = tests;
     if (double(tests) > slower * double(tests_when_sorted_)) tree.sort_next();
-    gather(executor, tree.size(), pairs);
+    sort(executor, tree.size());
+    return sorted_;
 }
 
-bool BroadPhase::update(Executor& executor, BoxTree& tree, const BroadPhaseInput& input,
-                        std::span<const BodySlot> changed, std::vector<SlotPair>& pairs) {
-    if (changed.empty()) return false;
-    if (changed.size() > tree.size() / few) {
-        next_.swap(pairs);
-        find(executor, tree, input, pairs);
-        return pairs != next_;
-    }
+void BroadPhase::update(Executor& executor, BoxTree& tree, const BroadPhaseInput& input,
+                        std::span<const BodySlot> changed, OpenPairs& pairs) {
+    if (changed.empty()) return;
+    if (changed.size() > tree.size() / few) return pairs.set_all(executor, find(executor, tree, input));
     is_changed_.resize(tree.size(), 0);
     for (const BodySlot body : changed) is_changed_[body] = 1;
     const Question asked{tree, input};
     run(executor, changed.size(),
         [&](Found& found, std::uint32_t i) { query(found, asked, changed[i], tree.levels() - 1, 0); });
-    gather(executor, tree.size(), come_);
-    const bool differ = replace(executor, pairs);
+    sort(executor, tree.size());
+    pairs.set_of(executor, changed, is_changed_, sorted_);
     for (const BodySlot body : changed) is_changed_[body] = 0;
-    return differ;
 }
 
 // What work(found, i) finds, by some i in a row.
@@ -127,48 +118,10 @@ void BroadPhase::query(Found& found, const Question& asked, BodySlot body, std::
     }
 }
 
-void BroadPhase::gather(Executor& executor, std::size_t slots, std::vector<SlotPair>& pairs) {
+void BroadPhase::sort(Executor& executor, std::size_t slots) {
     lists_.clear();
     for (const Found& found : found_) lists_.emplace_back(found.pairs);
-    sorter_.run(executor, slots, lists_, pairs);
-}
-
-// Puts what was found in the place of all pairs of boxes that changed. Mostly it is the same.
-bool BroadPhase::replace(Executor& executor, std::vector<SlotPair>& pairs) {
-    const RowSlices slices{pairs.size(), 4096};
-    const auto alone = [](std::size_t) { return false; };
-    const auto come_beside = [&](std::size_t begin, std::size_t end) {
-        return beside(come_, begin, end, pairs.size(), [&](std::size_t i) { return pairs[i]; });
-    };
-    ends_.assign(slices.count(), 0);
-    std::atomic<bool> differ = false;
-    slices.each(executor, alone, [&](std::uint32_t slice, std::size_t begin, std::size_t end) {
-        const auto come = come_beside(begin, end);
-        auto same = come.begin();
-        std::size_t gone = 0;
-        for (std::size_t i = begin; i < end; ++i) {
-            if (!is_changed(pairs[i])) continue;
-            if (same != come.end() && *same == pairs[i]) ++same;
-            ++gone;
-        }
-        if (same != come.end() || gone != come.size()) differ = true;
-        ends_[slice] = end - begin - gone + come.size();
-    });
-    if (!differ) return false;
-    std::partial_sum(ends_.begin(), ends_.end(), ends_.begin());
-    next_.resize(ends_.back());
-    slices.each(executor, alone, [&](std::uint32_t slice, std::size_t begin, std::size_t end) {
-        auto to = next_.begin() + std::ptrdiff_t(slice == 0 ? 0 : ends_[slice - 1]);
-        auto [more, come_end] = come_beside(begin, end);
-        for (std::size_t i = begin; i < end; ++i) {
-            if (is_changed(pairs[i])) continue;
-            for (; more != come_end && *more < pairs[i]; ++more) *to++ = *more;
-            *to++ = pairs[i];
-        }
-        std::copy(more, come_end, to);
-    });
-    pairs.swap(next_);
-    return true;
+    sorter_.run(executor, slots, lists_, sorted_);
 }
 
 void BroadPhase::trim() {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "broadphase/box_tree.h"
-#include "broadphase/pair_sorter.h"
+#include "pairs/open_pairs.h"
 
 #include <cstdint>
 #include <span>
@@ -29,13 +29,13 @@ struct BroadPhaseInput {
 /// Finds the pairs of boxes that touch. On all threads; no result depends on their number.
 class BroadPhase {
 public:
-    /// tree: of the boxes as they are. pairs: becomes all of those whose boxes touch, and which no filter keeps apart,
-    /// sorted.
-    void find(Executor& executor, BoxTree& tree, const BroadPhaseInput& input, std::vector<SlotPair>& pairs);
-    /// The same after a find() or update() of which `pairs` are what they became, when only the boxes in the slots of
-    /// `changed`, each once, are others since. Returns whether the pairs are.
-    bool update(Executor& executor, BoxTree& tree, const BroadPhaseInput& input, std::span<const BodySlot> changed,
-                std::vector<SlotPair>& pairs);
+    /// All pairs whose boxes touch, and which no filter keeps apart, sorted; valid until the next call. tree: of the
+    /// boxes as they are.
+    std::span<const SlotPair> find(Executor& executor, BoxTree& tree, const BroadPhaseInput& input);
+    /// These become `pairs`, which were those of the boxes before the ones in the slots of `changed`, each once, became
+    /// others.
+    void update(Executor& executor, BoxTree& tree, const BroadPhaseInput& input, std::span<const BodySlot> changed,
+                OpenPairs& pairs);
     /// Frees memory that the next call makes anew.
     void trim();
 
@@ -59,17 +59,14 @@ private:
                         const BoxTree::Corner& high, std::size_t level, std::uint32_t at);
     static void test(Found& found, const Question& asked, std::uint32_t node, std::uint32_t other);
     void query(Found& found, const Question& asked, BodySlot body, std::size_t level, std::uint32_t at) const;
-    void gather(Executor& executor, std::size_t slots, std::vector<SlotPair>& pairs);
-    bool replace(Executor& executor, std::vector<SlotPair>& pairs);
-    bool is_changed(const SlotPair& pair) const { return (is_changed_[pair.first] | is_changed_[pair.second]) != 0; }
+    void sort(Executor& executor, std::size_t slots);
 
     std::vector<Found> found_;
     std::vector<std::span<const SlotPair>> lists_; ///< of found_
-    PairSorter sorter_;
+    PairSorter<SlotPair> sorter_;
+    std::vector<SlotPair> sorted_;
     std::uint64_t tests_when_sorted_ = 0, sorts_when_found_ = 0; ///< of a find(); BoxTree::sorts() then
     std::vector<char> is_changed_;                               ///< by slot
-    std::vector<SlotPair> come_, next_;
-    std::vector<std::size_t> ends_; ///< of what slices of the pairs become
 };
 
 } // namespace raycontact

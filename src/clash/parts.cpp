@@ -142,10 +142,10 @@ std::vector<PartPair> near_boxes(const std::vector<Part>& parts, double reach) {
         box.low = box.low - half;
         box.high = box.high + half;
     }
-    std::vector<SlotPair> found;
     BoxTree tree;
     tree.build(executor, grown);
-    BroadPhase().find(executor, tree, {grown, {}}, found);
+    BroadPhase broad_phase;
+    const std::span<const SlotPair> found = broad_phase.find(executor, tree, {grown, {}});
     std::vector<PartPair> pairs;
     pairs.reserve(found.size());
     for (const auto& [a, b] : found) pairs.push_back({a, b, !boxes[a].touches(boxes[b])});

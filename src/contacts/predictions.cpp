@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "contacts/predictions.h"
 
-#include "contacts/changes.h"
+#include "contacts/contact_order.h"
 #include "contacts/write_contact.h"
 #include "mesh/vector.h"
 

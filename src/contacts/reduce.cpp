@@ -24,17 +24,17 @@ ManifoldPoint point_of(const Contact& contact, double place) {
 } // namespace
 
 // The patches take turns, the one with the deepest contact first: each gives its next point.
-void ContactReducer::rank(Work& work, std::span<const PlacedBody> bodies, const Changes& changes,
+void ContactReducer::rank(Work& work, std::span<const PlacedBody> bodies, const ContactStore& last,
                           std::span<const Contact> contacts, std::span<std::uint32_t> ranks) const {
     const auto [a, b] = pair_of(contacts.front());
     const double place = one_place * smaller_size(bodies[a], bodies[b]);
     work.points.clear();
-    const auto previous = changes.previous();
-    auto old = std::ranges::lower_bound(previous, order_of(contacts.front()), {}, &Changes::Known::order);
+    const std::span<const Contact> previous = last.of({a, b});
+    auto old = previous.begin();
     for (const Contact& contact : contacts) {
         ManifoldPoint& point = work.points.emplace_back(point_of(contact, place));
-        while (old != previous.end() && old->order() < order_of(contact)) ++old;
-        point.present = old != previous.end() && old->order() == order_of(contact);
+        while (old != previous.end() && order_of(*old) < order_of(contact)) ++old;
+        point.present = old != previous.end() && order_of(*old) == order_of(contact);
     }
     work.patches.clear();
     join_patches(work.points, patch_cosine, work.patches);
@@ -73,7 +73,7 @@ void ContactReducer::keep_budget(std::uint64_t most, std::span<const Contact> co
 }
 
 void ContactReducer::run(Executor& executor, const Settings& settings, std::span<const PlacedBody> bodies,
-                         const Changes& changes, std::vector<Contact>& contacts) {
+                         const ContactStore& last, std::vector<Contact>& contacts) {
     clear();
     if (settings.max_contacts_per_pair == 0 && settings.max_contacts == 0) return;
     const auto count = static_cast<std::uint32_t>(contacts.size());
@@ -89,7 +89,7 @@ void ContactReducer::run(Executor& executor, const Settings& settings, std::span
         for (std::uint32_t p = begin; p < end; ++p) {
             const std::span own(contacts.begin() + begins_[p], contacts.begin() + begins_[p + 1]);
             const std::span ranks(ranks_.begin() + begins_[p], own.size());
-            rank(work, bodies, changes, own, ranks);
+            rank(work, bodies, last, own, ranks);
             for (std::uint32_t& one : ranks)
                 if (one >= most_of_pair && one < merged_away) one = not_chosen;
         }

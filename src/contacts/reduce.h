@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "contacts/changes.h"
+#include "contacts/contact_store.h"
 #include "executor/executor.h"
 #include "pairs/directed_pairs.h"
 
@@ -17,14 +17,14 @@ namespace raycontact {
 /// pair is looked at alone, its contacts in their order, so no device and no thread changes what stays.
 class ContactReducer {
 public:
-    /// contacts: sorted; changes: of the last step, for the points that were there. Contacts that stay keep their
-    /// order.
-    void run(Executor& executor, const Settings& settings, std::span<const PlacedBody> bodies, const Changes& changes,
+    /// contacts: of some pairs, all of each, sorted; last: of the last step, for the points that were there. Contacts
+    /// that stay keep their order.
+    void run(Executor& executor, const Settings& settings, std::span<const PlacedBody> bodies, const ContactStore& last,
              std::vector<Contact>& contacts);
     /// Of the last run: those that say what another says, and those left out.
     std::uint64_t merged() const { return merged_; }
-    /// Sorted.
-    std::span<const Contact> left_out() const { return left_out_; }
+    /// Sorted; may be taken.
+    std::vector<Contact>& left_out() { return left_out_; }
     void clear();
     void trim();
 
@@ -34,8 +34,8 @@ private:
         std::vector<ManifoldPatch> patches;
         std::vector<std::vector<std::uint32_t>> chosen; ///< by patch
     };
-    void rank(Work& work, std::span<const PlacedBody> bodies, const Changes& changes, std::span<const Contact> contacts,
-              std::span<std::uint32_t> ranks) const;
+    void rank(Work& work, std::span<const PlacedBody> bodies, const ContactStore& last,
+              std::span<const Contact> contacts, std::span<std::uint32_t> ranks) const;
     void keep_budget(std::uint64_t most, std::span<const Contact> contacts);
 
     std::vector<std::uint32_t> ranks_;  ///< of each contact in its pair: 0 for the deepest; a name below for others

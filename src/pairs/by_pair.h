@@ -15,10 +15,10 @@ namespace raycontact {
 template <class T>
 class ByPair {
 public:
-    /// found: each names its pair by an index of `directed`, which has the directed indices of some of pair_count
-    /// pairs. Those of one pair lie in a row, and keep their order.
-    void set(Executor& executor, std::span<const T> found, std::span<const std::uint32_t> directed,
-             std::size_t pair_count) {
+    /// found: directed(found.pair) is the directed index of one of pair_count pairs. Those of one lie in a row, and
+    /// keep their order.
+    template <class Directed>
+    void set(Executor& executor, std::span<const T> found, Directed&& directed, std::size_t pair_count) {
         firsts_.resize(2 * pair_count + 1);
         executor.run(static_cast<std::uint32_t>(firsts_.size()), 1 << 15, [&](std::uint32_t begin, std::uint32_t end) {
             std::fill(firsts_.begin() + begin, firsts_.begin() + end, 0);
@@ -26,12 +26,12 @@ public:
         const RowSlices slices{found.size(), 512};
         const auto belongs = [&](std::size_t i) { return found[i].pair == found[i - 1].pair; };
         slices.each_row(executor, belongs, [&](std::size_t begin, std::size_t end) {
-            firsts_[directed[found[begin].pair] + 1] = static_cast<std::uint32_t>(end - begin);
+            firsts_[directed(found[begin].pair) + 1] = static_cast<std::uint32_t>(end - begin);
         });
         sum_up(executor, std::span(firsts_));
         all_.resize(found.size());
         slices.each_row(executor, belongs, [&](std::size_t begin, std::size_t end) {
-            const std::uint32_t pair = directed[found[begin].pair];
+            const std::uint32_t pair = directed(found[begin].pair);
             for (T* own = &all_[firsts_[pair]]; begin < end; ++begin, ++own) {
                 *own = found[begin];
                 own->pair = pair;

@@ -29,39 +29,16 @@ void DevicePairs::list_moved(const Update& update, Pose PlacedBody::*pose, Placi
     });
 }
 
-void DevicePairs::list_changes(const Update& update) {
-    changed_.clear();
-    const auto keep = [](std::size_t, std::size_t, std::size_t) {};
-    const auto change = [&](kernels::uint slot, const kernels::PairBodies& bodies) {
-        if (slot == pairs_.size()) pairs_.emplace_back();
-        pairs_[slot] = bodies;
-        changed_.push_back({slot, bodies});
-    };
-    const auto open = [&](std::size_t i, kernels::uint slot) {
-        change(slot, {update.pairs[i].first, update.pairs[i].second});
-    };
-    const bool changed = slots_.match(update.executor, update.pairs, keep, open, [&](kernels::uint slot) {
-        change(slot, {NONE, NONE});
-    });
-    if (!changed) return;
-    // A slot may be given again in the step in which it becomes free: it is sent once, as it is now.
-    std::ranges::sort(changed_, {}, &kernels::PairChange::slot);
-    const auto same_slot = [](const auto& a, const auto& b) { return a.slot == b.slot; };
-    changed_.erase(std::unique(changed_.begin(), changed_.end(), same_slot), changed_.end());
-    for (auto& [slot, bodies] : changed_) bodies = pairs_[slot];
-    directed_.resize(2 * pairs_.size());
-    update.executor.each(update.pairs.size(), 8192, [&](std::uint32_t i) {
-        const std::size_t slot = slots_.slot(i);
-        directed_[2 * slot] = 2 * i;
-        directed_[2 * slot + 1] = 2 * i + 1;
-    });
-}
-
 void DevicePairs::place(const Update& update, bool next) {
-    if (update.pairs.size() >= NONE / 2) throw InputError("more than 2^31 pairs in one step; give fewer");
-    if (is_mostly_empty(slots_.end(), update.pairs.size())) clear();
-    list_changes(update);
-    device_pairs_.extend(update.device, pairs_.size());
+    if (update.open.count() >= NONE / 2) throw InputError("more than 2^31 pairs in one step; give fewer");
+    open_ = update.open.count();
+    changed_.clear();
+    const std::span<const kernels::PairBodies> pairs = update.open.bodies();
+    if (!update.open.changes().is_next(seen_)) device_pairs_ = {};
+    update.open.changes().each_since(seen_, pairs.size(), [&](std::uint32_t slot) {
+        changed_.push_back({slot, pairs[slot]});
+    });
+    device_pairs_.extend(update.device, pairs.size());
     device_changed_.write(update.device, changed_);
     list_moved(update, &PlacedBody::centred, now_);
     place(update, now_);
@@ -72,21 +49,24 @@ void DevicePairs::place(const Update& update, bool next) {
 }
 
 void DevicePairs::place(const Update& update, Placing& at) {
-    at.placed.resize(update.device, 2 * pairs_.size());
+    const std::span<const kernels::PairBodies> pairs = update.open.bodies();
+    at.placed.resize(update.device, 2 * pairs.size());
     if (!update.device.traits().has_double) return place_on_host(update, at);
     at.device_bodies.extend(update.device, at.sent.size());
     at.device_moved.write(update.device, at.moved);
     launch<KernelId::apply_changes>(update.device, at.moved.size() + changed_.size(),
                                     static_cast<kernels::uint>(at.moved.size()), at.device_moved, device_changed_,
                                     at.device_bodies, device_pairs_);
-    launch<KernelId::place_pairs>(update.device, pairs_.size(), device_pairs_, at.device_bodies,
+    launch<KernelId::place_pairs>(update.device, pairs.size(), device_pairs_, at.device_bodies,
                                   update.arrays().headers, at.placed);
 }
 
 void DevicePairs::place_on_host(const Update& update, Placing& at) {
-    at.host_placed.resize(2 * pairs_.size());
-    update.executor.run(static_cast<kernels::uint>(pairs_.size()), 256, [&](kernels::uint begin, kernels::uint end) {
-        kernels::prototype::place_pairs({begin, end}, static_cast<kernels::uint>(pairs_.size()), pairs_.data(),
+    const std::span<const kernels::PairBodies> pairs = update.open.bodies();
+    const auto count = static_cast<kernels::uint>(pairs.size());
+    at.host_placed.resize(2 * pairs.size());
+    update.executor.run(count, 256, [&](kernels::uint begin, kernels::uint end) {
+        kernels::prototype::place_pairs({begin, end}, count, pairs.data(),
                                         at.sent.data(), update.shapes.headers().data(), at.host_placed.data());
     });
     at.placed.write(update.device, at.host_placed);

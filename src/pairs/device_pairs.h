@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pairs/pair_slots.h"
 #include "pairs/update.h"
 
 namespace raycontact {
@@ -13,23 +12,21 @@ public:
     /// next: also where they will be at the next step.
     void place(const Update& update, bool next = false);
     void clear() { *this = {}; }
+    /// Of the last place().
+    std::size_t count() const { return open_; }
     std::uint64_t bytes() const {
-        return slots_.pairs().size()
-               * (sizeof(SlotPair) + 4 * sizeof(std::uint32_t) + 2 * sizeof(kernels::PairBodies)
-                  + 2 * sizeof(kernels::DirectedPair));
+        return open_ * (sizeof(kernels::PairBodies) + 2 * sizeof(kernels::DirectedPair));
     }
 
     /// At 2 x slot of a pair, + 1 for vertices of the second body against the first; some slots have no pair.
     const Array<kernels::DirectedPair>& placed() const { return now_.placed; }
     /// The same at the next step; empty unless asked for.
     const Array<kernels::DirectedPair>& next_placed() const { return next_.placed; }
-    /// By the same index: the directed index among the step's pairs; anything where the slot has no pair.
-    std::span<const std::uint32_t> directed() const { return directed_; }
 
 private:
     /// The pairs at one time.
     struct Placing {
-        MovedBodies::Seen seen = 0;
+        SlotChanges::Seen seen = 0;
         std::vector<kernels::BodyPlace> sent, moved;    ///< by body; of those that moved
         std::vector<kernels::DirectedPair> host_placed; ///< of a device without double
         Array<kernels::BodyPlace> device_bodies, device_moved;
@@ -40,9 +37,8 @@ private:
     void place(const Update& update, Placing& at);
     void place_on_host(const Update& update, Placing& at);
 
-    PairSlots slots_;
-    std::vector<std::uint32_t> directed_;
-    std::vector<kernels::PairBodies> pairs_; ///< by slot
+    std::size_t open_ = 0;
+    SlotChanges::Seen seen_ = 0;
     std::vector<kernels::PairChange> changed_;
     Placing now_, next_;
     Array<kernels::PairBodies> device_pairs_;

@@ -32,7 +32,7 @@ float arc_of(float turn, float far, float way) {
 }
 } // namespace
 
-void Motion::update(Executor& executor, std::span<const PlacedBody> bodies, const MovedBodies& moved) {
+void Motion::update(Executor& executor, std::span<const PlacedBody> bodies, const SlotChanges& moved) {
     bodies_.resize(bodies.size());
     lasts_.resize(bodies.size());
     const bool steps_passed = !moved.is_next(seen_);
@@ -61,7 +61,7 @@ void Motion::follow(std::span<const PlacedBody> bodies, BodySlot body) {
     last = {now, shear, bodies[body].generation, true};
 }
 
-void Motion::expect(Executor& executor, std::span<const PlacedBody> bodies, const MovedBodies& moved) {
+void Motion::expect(Executor& executor, std::span<const PlacedBody> bodies, const SlotChanges& moved) {
     if (next_.size() != bodies.size()) next_.resize(bodies.size());
     moved.each_since(expected_, executor, bodies.size(), [&](BodySlot body) {
         if (bodies[body].shape == nullptr) return;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "executor/executor.h"
-#include "moved_bodies.h"
+#include "slot_changes.h"
 #include "pairs/directed_pairs.h"
 #include "platform/prefetch.h"
 
@@ -16,9 +16,9 @@ namespace raycontact {
 class Motion {
 public:
     /// Once a step, with every body of the scene.
-    void update(Executor& executor, std::span<const PlacedBody> bodies, const MovedBodies& moved);
+    void update(Executor& executor, std::span<const PlacedBody> bodies, const SlotChanges& moved);
     /// After update(), with where the bodies are expected at the next step.
-    void expect(Executor& executor, std::span<const PlacedBody> bodies, const MovedBodies& moved);
+    void expect(Executor& executor, std::span<const PlacedBody> bodies, const SlotChanges& moved);
 
     /// Prefetches what pair_bound() reads of the second body; the first body is mostly that of the last pair.
     void prefetch(const SlotPair& pair) const { platform::prefetch(&bodies_[pair.second]); }
@@ -64,7 +64,7 @@ private:
     std::vector<Body> bodies_, next_;
     std::vector<Last> lasts_;
     std::vector<BodySlot> moving_; ///< in the last step, unless that may be any
-    MovedBodies::Seen seen_ = 0, expected_ = 0;
+    SlotChanges::Seen seen_ = 0, expected_ = 0;
     bool any_moving_ = false; ///< more than moving_ lists
 };
 

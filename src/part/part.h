@@ -33,21 +33,31 @@ public:
         return broad_phase_.find(*device_, changes, pairs);
     }
 
-    /// Starts a step. bodies: of the scene, by slot. pairs: the part's, sorted, each once. All stay valid until the
-    /// next begin(). A part that goes on without pairs asks nothing of its device.
-    void begin(std::span<const PlacedBody> bodies, const MovedBodies& moved, std::span<const SlotPair> pairs,
+    /// How it answers a step with these settings.
+    Answers answers(const Settings& settings) const { return raycontact::answers(settings, device_->traits()); }
+
+    /// The pairs of a part: those that are open, and those of them that a step asks about (Update::pairs).
+    struct Pairs {
+        const PairSlots& open;
+        std::span<const SlotPair> asked;
+        std::span<const std::uint32_t> slots;
+    };
+    /// Starts a step. bodies: of the scene, by slot. All stays valid until the next begin(). A part that goes on without
+    /// pairs asks nothing of its device.
+    void begin(std::span<const PlacedBody> bodies, const SlotChanges& moved, const Pairs& pairs,
                const Settings& settings);
-    /// The contacts of the step, sorted.
+    /// The contacts of the pairs that were asked about, or if it answers for all, of all; sorted.
     void end(std::vector<Contact>& contacts);
     /// After end(), in the same step: sorts in the contacts of pairs that are new to this part, because another one
-    /// failed. The part has them from now on.
-    void take_over(std::span<const SlotPair> pairs, std::vector<Contact>& contacts);
+    /// failed. The part has them from now on, in these slots.
+    void take_over(const PairList& pairs, std::vector<Contact>& contacts);
 
     /// The state kept for some pairs of the last step, for another part to go on with as this part would have. bodies
     /// as in the last step. Empty if the contacts do not depend on that state.
-    std::vector<std::byte> export_state(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs);
-    /// Adds such state. Call it before the begin() that first has these pairs, with the same bodies.
-    void import_state(std::span<const PlacedBody> bodies, std::span<const std::byte> bytes);
+    std::vector<std::byte> export_state(std::span<const PlacedBody> bodies, const PairList& pairs);
+    /// Adds such state: of the same pairs, in the slots that they have in this part. Call it before the begin() that
+    /// first has them, with the same bodies.
+    void import_state(std::span<const PlacedBody> bodies, const PairList& pairs, std::span<const std::byte> bytes);
 
     /// Adds the rays kept for the next step; bodies as in the last step.
     void list_kept_rays(std::span<const PlacedBody> bodies, std::vector<KeptRay>& rays);
@@ -63,8 +73,8 @@ public:
     void forget();
 
 private:
-    Update update(std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs) const;
-    void add_resting(std::vector<Contact>& contacts);
+    Update update(std::span<const PlacedBody> bodies, const Pairs& pairs) const;
+    Update update() const { return update(bodies_, {*open_, asked_, slots_}); }
     void place(const Update& now, const Pipeline& found, std::vector<Contact>& contacts);
 
     std::unique_ptr<Executor> executor_;
@@ -78,22 +88,20 @@ private:
     /// Pairs adopted in the last step, in a pipeline of their own: the other one has done its step, and would follow
     /// its rays twice.
     struct Adopted {
-        std::vector<SlotPair> pairs;
+        PairSlots open;
+        PairList pairs;
         Pipeline pipeline;
+        Pairs all() const { return {open, pairs.pairs, pairs.slots}; }
     };
     std::vector<std::unique_ptr<Adopted>> adopted_;
 
-    std::vector<Contact> last_, merged_; ///< last_: of all pairs, in the last step, if few bodies moved in it
-    std::vector<char> stays_;            ///< of last_: the contact's pair rests
-    std::vector<std::size_t> ends_;      ///< of what slices of last_ become
-    MovedBodies::Seen seen_ = 0;
-    bool has_last_ = false, may_rest_ = false;
     bool had_none_ = false;              ///< no pairs in the last step
     bool idle_ = false;                  ///< no pairs in this one either
-    bool knows_moves_ = false;           ///< those since the last step: else any body may have moved
     std::span<const PlacedBody> bodies_; ///< of the step, as what follows
-    const MovedBodies* moved_;
-    std::span<const SlotPair> pairs_;
+    const SlotChanges* moved_;
+    const PairSlots* open_;
+    std::span<const SlotPair> asked_;
+    std::span<const std::uint32_t> slots_;
     const Settings* settings_;
 };
 

@@ -25,8 +25,16 @@ Finds finds(const Update& update) {
 
 } // namespace
 
-bool can_rest(const Settings& settings, const DeviceTraits& traits) {
-    return finds(settings, traits) == Finds::certified;
+Answers answers(const Settings& settings, const DeviceTraits& traits) {
+    switch (finds(settings, traits)) {
+    case Finds::standard:
+        return Answers::all;
+    case Finds::certified:
+        return Answers::some;
+    case Finds::coherent:
+        return Answers::asked;
+    }
+    return Answers::all;
 }
 
 bool needs_motion(const Settings& settings, const DeviceTraits& traits) {
@@ -48,8 +56,7 @@ void Pipeline::trim() {
     coherent_.trim();
     edges_ = NearRays(edges_.sources());
     points_ = NearRays(points_.sources());
-    free_all(batch_, margins_, device_margins_, found_, local_, near_, near_points_, speculative_, asked_,
-             asked_slices_);
+    free_all(batch_, margins_, margins_seen_, device_margins_, found_, pairs_found_, local_, near_, near_points_, speculative_, asked_, asked_slices_);
 }
 
 // Turns hits into contacts in the targets' frames: counts them and writes them.
@@ -97,16 +104,19 @@ void Pipeline::begin(const Update& update) {
     if (casts_points_) cast_near(update, points_);
 }
 
-// Of slots without a pair they mean nothing.
+// Of slots without a pair they mean nothing. What changes a margin makes all begin anew.
 void Pipeline::set_margins(const Update& update) {
-    const std::span<const std::uint32_t> directed = pairs_of(update).directed();
-    margins_.resize(directed.size());
-    for (std::size_t i = 0; i < directed.size(); ++i) {
-        if (directed[i] / 2 >= update.pairs.size()) continue;
-        const auto [source, target] = directed_bodies(update.bodies, update.pairs, directed[i]);
-        margins_[i] = static_cast<float>(1.000001 * speculative_margin(update.settings, source, target));
-    }
-    device_margins_.write(update.device, margins_);
+    const std::size_t before = margins_.size();
+    margins_.resize(2 * std::size_t{update.open.end()});
+    bool changed = margins_.size() != before;
+    update.open.changes().each_since(margins_seen_, update.open.end(), [&](std::uint32_t slot) {
+        if (!update.open.is_open(slot)) return;
+        const auto [a, b] = update.open[slot];
+        const double margin = speculative_margin(update.settings, update.bodies[a], update.bodies[b]);
+        margins_[2 * slot] = margins_[2 * slot + 1] = static_cast<float>(1.000001 * margin);
+        changed = true;
+    });
+    if (changed) device_margins_.write(update.device, margins_);
 }
 
 void Pipeline::cast_near(const Update& update, NearRays& rays) {
@@ -141,25 +151,49 @@ void Pipeline::cast_again(const Update& update) {
         coherent_.cast(update, batch_);
 }
 
-void Pipeline::end(const Update& update) {
+Update Pipeline::end(const Update& asked) {
     for (;;) {
-        const bool all_written = read(update);
-        const bool all_cast = all_rays_had_room(update);
-        const bool all_edges = !casts_edges_ || edges_.had_room(update.device, batch_);
-        const bool all_points = !casts_points_ || points_.had_room(update.device, batch_);
+        const bool all_written = read(asked);
+        const bool all_cast = all_rays_had_room(asked);
+        const bool all_edges = !casts_edges_ || edges_.had_room(asked.device, batch_);
+        const bool all_points = !casts_points_ || points_.had_room(asked.device, batch_);
         if (all_written && all_cast && all_edges && all_points) break;
-        if (!all_cast) cast_again(update);
-        gather(update);
-        if (!all_edges) cast_near(update, edges_);
-        if (!all_points) cast_near(update, points_);
+        if (!all_cast) cast_again(asked);
+        gather(asked);
+        if (!all_edges) cast_near(asked, edges_);
+        if (!all_points) cast_near(asked, points_);
     }
-    if (finds(update) == Finds::coherent) coherent_.keep(batch_);
-    local_.set(update.executor, found_.values(), batch_.directed, update.pairs.size());
+    if (finds(asked) == Finds::coherent) coherent_.keep(batch_);
+    const Update update = list_pairs(asked);
+    const bool rays_by_slot = finds(update) == Finds::standard;
+    const auto by_slot = [&](std::uint32_t i) { return pairs_found_.directed(i); };
+    const auto directed = [&](std::uint32_t i) { return rays_by_slot ? by_slot(i) : batch_.directed[i]; };
+    local_.set(update.executor, found_.values(), directed, update.pairs.size());
     find_speculative(update);
-    if (casts_edges_)
-        near_.set(update.executor, edges_.found().values(), pairs_of(update).directed(), update.pairs.size());
+    if (casts_edges_) near_.set(update.executor, edges_.found().values(), by_slot, update.pairs.size());
     if (update.settings.features == Features::edges && !casts_edges_) certified_.find_edges(update, local_, batch_);
     list_asked(update);
+    return update;
+}
+
+Update Pipeline::list_pairs(const Update& asked) {
+    if (finds(asked) != Finds::standard) {
+        if (casts_edges_ || casts_points_) pairs_found_.set_places(asked.executor, asked.open, asked.slots);
+        return asked;
+    }
+    const auto directed = [](const auto& found) { return found.pair; };
+    pairs_found_.clear();
+    pairs_found_.add(asked.executor, asked.open, found_.values(), directed);
+    if (casts_points_) pairs_found_.add(asked.executor, asked.open, points_.found().values(), directed);
+    if (casts_edges_) { // TODO inside
+        std::vector<std::uint32_t> all;
+        for (std::uint32_t slot = 0; slot < asked.open.end(); ++slot)
+            if (asked.open.is_open(slot)) all.push_back(2 * slot);
+        pairs_found_.add(asked.executor, asked.open, std::span<const std::uint32_t>(all),
+                         [](std::uint32_t slot) { return slot; });
+    }
+    pairs_found_.list(asked.executor, asked.open, asked.bodies.size());
+    return asked.about(pairs_found_.pairs());
 }
 
 // Of the vertices: those of edges wait for what vertices tell.
@@ -167,7 +201,9 @@ void Pipeline::find_speculative(const Update& update) {
     asked_.clear();
     if (!update.settings.is_speculative()) return speculative_.clear();
     if (casts_points_)
-        near_points_.set(update.executor, points_.found().values(), pairs_of(update).directed(), update.pairs.size());
+        near_points_.set(
+            update.executor, points_.found().values(), [&](std::uint32_t i) { return pairs_found_.directed(i); },
+            update.pairs.size());
     else
         certified_.find_points(update, batch_);
     list(update, [&](std::uint32_t i, std::vector<AskedPair>& asked) {
@@ -200,7 +236,7 @@ void Pipeline::list_asked(const Update& update) {
     });
 }
 
-// What ask(i, list) adds for the pairs that do not rest, in their order, on all threads.
+// What ask(i, list) adds for the pairs, in their order, on all threads.
 template <class Ask>
 void Pipeline::list(const Update& update, Ask&& ask) {
     constexpr std::size_t at_once = 1024;
@@ -208,7 +244,7 @@ void Pipeline::list(const Update& update, Ask&& ask) {
     if (asked_slices_.size() < slices) asked_slices_.resize(slices);
     const auto find = [&](std::uint32_t s, std::vector<AskedPair>& found) {
         for (std::size_t i = s * at_once; i < std::min(pairs, (s + 1) * at_once); ++i)
-            if (!rests(update, i)) ask(static_cast<std::uint32_t>(i), found);
+            ask(static_cast<std::uint32_t>(i), found);
     };
     if (slices == 1) return find(0, asked_);
     update.executor.each(slices, 1, [&](std::uint32_t s) {
@@ -219,21 +255,20 @@ void Pipeline::list(const Update& update, Ask&& ask) {
         asked_.insert(asked_.end(), found.begin(), found.end());
 }
 
-std::vector<std::byte> Pipeline::export_state(const Update& last, std::span<const SlotPair> pairs) {
+std::vector<std::byte> Pipeline::export_state(const Update& last, const PairList& pairs) {
     if (finds(last) != Finds::coherent) return {};
-    return coherent_.export_state(last.device, pairs);
+    return coherent_.export_state(last.device, last.open, pairs);
 }
 
-void Pipeline::import_state(const Update& last, std::span<const std::byte> bytes) {
-    if (!bytes.empty()) coherent_.import_state(last.device, bytes);
+void Pipeline::import_state(const Update& last, const PairList& pairs, std::span<const std::byte> bytes) {
+    if (!bytes.empty()) coherent_.import_state(last.device, pairs, bytes);
 }
 
 void Pipeline::list_kept_rays(const Update& last, std::vector<KeptRay>& rays) {
-    if (finds(last) == Finds::coherent) coherent_.list_kept_rays(last.device, last.bodies, last.pairs, rays);
+    if (finds(last) == Finds::coherent) coherent_.list_kept_rays(last.device, last.bodies, last.open, rays);
 }
 
 void Pipeline::count(const Update& last, StepStats& stats) const {
-    stats.pairs += last.pairs.size();
     stats.details.side_tests += batch_.sums[RayBatch::contact_sum].sums[1];
     stats.details.rays_cast += batch_.sums[RayBatch::contact_sum].sums[2];
     stats.pair_bytes += asked_.size() * sizeof(AskedPair);
@@ -241,7 +276,7 @@ void Pipeline::count(const Update& last, StepStats& stats) const {
     if (casts_points_) stats.pair_bytes += points_.bytes() + near_points_.all().size_bytes();
     switch (finds(last)) {
     case Finds::standard:
-        return standard_.count(batch_, last.pairs.size(), stats);
+        return standard_.count(batch_, stats);
     case Finds::certified:
         return certified_.count(batch_, stats);
     case Finds::coherent:

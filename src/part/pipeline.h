@@ -3,6 +3,7 @@
 
 #include "device/results.h"
 #include "pairs/by_pair.h"
+#include "pairs/found_pairs.h"
 #include "pairs/near_edges.h"
 #include "rays/certified.h"
 #include "rays/coherent.h"
@@ -20,9 +21,11 @@ class Pipeline {
 public:
     /// Starts a step.
     void begin(const Update& update);
-    /// Ends the step that begin() started with the same update. What follows is valid until the next begin().
-    void end(const Update& update);
-    /// The contacts of vertices; LocalContact::pair is the directed index in update.pairs.
+    /// Ends the step that begin() started with the same update. Returns it with the pairs that the answers are of: those
+    /// asked, or of a device that answers for all, those of which it found something. What follows is valid until the
+    /// next begin().
+    Update end(const Update& update);
+    /// The contacts of vertices; LocalContact::pair is the directed index in the pairs of end().
     const ByPair<kernels::LocalContact>& contacts() const { return local_; }
     /// The speculative contacts of vertices.
     const SpeculativeVertices& speculative() const { return speculative_; }
@@ -30,12 +33,9 @@ public:
     /// order; none without edges and speculative contacts.
     std::span<const AskedPair> asked() const { return asked_; }
 
-    /// Whether the i-th pair of the step has what it had in the last one, which was not found again.
-    bool rests(const Update& update, std::size_t i) { return update.may_rest && certified_.rests(i); }
-
     /// As Part's.
-    std::vector<std::byte> export_state(const Update& last, std::span<const SlotPair> pairs);
-    void import_state(const Update& last, std::span<const std::byte> bytes);
+    std::vector<std::byte> export_state(const Update& last, const PairList& pairs);
+    void import_state(const Update& last, const PairList& pairs, std::span<const std::byte> bytes);
 
     void list_kept_rays(const Update& last, std::vector<KeptRay>& rays);
 
@@ -53,6 +53,7 @@ private:
     void cast_again(const Update& update);
     void set_margins(const Update& update);
     void cast_near(const Update& update, NearRays& rays);
+    Update list_pairs(const Update& asked);
     void find_speculative(const Update& update);
     const DevicePairs& pairs_of(const Update& update) const;
     void list_asked(const Update& update);
@@ -66,8 +67,10 @@ private:
     RayBatch batch_;
     NearRays edges_{BlockSearch::Sources::edges}, points_{BlockSearch::Sources::points};
     std::vector<float> margins_; ///< of speculative contacts, by directed pair of the device
+    SlotChanges::Seen margins_seen_ = 0;
     Array<float> device_margins_;
     Results<kernels::LocalContact> found_; ///< in the order of their rays
+    FoundPairs pairs_found_;               ///< by a device that answers by slot
     ByPair<kernels::LocalContact> local_;
     ByPair<NearEdge> near_, near_points_;
     bool casts_edges_ = false, casts_points_ = false;
@@ -76,8 +79,10 @@ private:
     std::vector<std::vector<AskedPair>> asked_slices_; ///< of slices of the pairs
 };
 
-/// Whether the method lets pairs rest (Update::may_rest) on this device.
-bool can_rest(const Settings& settings, const DeviceTraits& traits);
+/// How the method answers on this device: for the pairs that are asked about, which may be those alone of which
+/// something may have changed; for those, but all must be asked about in every step; or for all, whatever is asked.
+enum class Answers : std::uint8_t { some, asked, all };
+Answers answers(const Settings& settings, const DeviceTraits& traits);
 /// Whether the method needs the motion of bodies on this device.
 bool needs_motion(const Settings& settings, const DeviceTraits& traits);
 

@@ -192,10 +192,11 @@ void CertifiedRays::settle(const Update& update, std::uint32_t first_ray) {
             const std::uint32_t ray = segment < tests.size() ? first_ray + firsts[segment] : 0;
             const std::size_t end = segment + segments_of(own.count);
             kernels::HeldRange& held_range = held_ranges[i++];
-            held_range = {own.rays.first, own.rays.held ? own.rays.count : 0, ray, due.margin, due.radius,
+            const bool held = own.rays.held + 1 == step_; // the pair was asked about in the last step, too
+            held_range = {own.rays.first, held ? own.rays.count : 0, ray, due.margin, due.radius,
                           due.tests_cones};
             // For an idle pair nothing was known and nothing is sought, so nothing is known afterwards.
-            own.rays = {ray, 0, holds && !is_idle(held_range)};
+            own.rays = {ray, 0, holds && !is_idle(held_range) ? step_ : 0};
             own.valid_until = own.expiry;
             for (; segment < end; ++segment) {
                 own.valid_until = std::min(own.valid_until, double(tests[segment].valid_until));
@@ -227,11 +228,11 @@ void CertifiedRays::decide(const Update& update, RayBatch& batch) {
 }
 
 void CertifiedRays::cast(const Update& update, RayBatch& batch) {
-    open_pairs_ = update.pairs.size();
+    open_pairs_ = update.open.count();
+    ++step_;
     batch.resize(update.device, 0);
-    // What the few that are left know is worth less than the memory: they are tested anew.
-    if (is_mostly_empty(table_.slots(), update.pairs.size())) clear();
-    table_.match(update.executor, update.pairs, [this](CertifiedPair& state) {
+    if (!table_.knows(update.open)) clear();
+    table_.begin(update.open, update.slots, [this](CertifiedPair& state) {
         close(state);
         edges_.release(state);
         points_.release(state);

@@ -26,9 +26,8 @@ public:
     void find_edges(const Update& update, const ByPair<kernels::LocalContact>& contacts, RayBatch& batch);
     void clear();
 
-    /// Of the i-th pair of the step: its near edges, and what is known while they last (AskedPair).
+    /// Of the i-th pair that is asked about: its near edges, and what is known while they last (AskedPair).
     std::array<std::span<kernels::NearEdge>, 2> near(std::size_t i) { return edges_.of(table_.state(i)); }
-    bool rests(std::size_t i) { return table_.hot(i).rests; }
     bool has_points(std::size_t i) { return table_.hot(i).has_points; }
     std::array<std::span<kernels::NearEdge>, 2> points(std::size_t i) { return points_.of(table_.state(i)); }
     bool is_apart(std::size_t i) { return table_.hot(i).apart; }
@@ -68,6 +67,7 @@ private:
     std::size_t standard_count_ = 0;      ///< of directed_
     kernels::Totals standard_sums_{};     ///< of pairs left to `standard`: rays cast, rays of the rule
     std::size_t open_pairs_ = 0;
+    std::uint64_t step_ = 1; ///< of `held_`
 
     Array<kernels::DirectedPair> pairs_; ///< of directed_
     Array<kernels::Segment> segments_;

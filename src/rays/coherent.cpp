@@ -285,7 +285,7 @@ void CoherentRays::begin(const Update& update, RayBatch& batch) {
     full_rays_ = 0;
     ++step_;
     open_pairs_ = update.pairs.size();
-    table_.match(update.executor, update.pairs, [](PairState&) {});
+    table_.begin(update.open, update.slots, [](PairState&) {});
     skips_outside_ = update.settings.paper.skip_outside;
     choose_turns(update);
     list_segments();
@@ -322,28 +322,28 @@ std::span<const kernels::CachedRay> CoherentRays::cached_of(const Kept& own, std
     return own.count > 0 ? all.subspan(own.first, own.count) : all.first(0);
 }
 
-void CoherentRays::list_kept_rays(Device& device, std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
+void CoherentRays::list_kept_rays(Device& device, std::span<const PlacedBody> bodies, const PairSlots& open,
                                   std::vector<KeptRay>& rays) {
     const std::vector<kernels::CachedRay> cached = read_cached_rays(device);
-    for (const SlotPair& pair : pairs) {
-        const std::optional<std::size_t> place = table_.place(pair);
-        for (std::uint32_t d = 0; place && d < 2; ++d) {
-            const Kept& own = table_.hot(*place).kept[d];
+    for (std::uint32_t slot = 0; slot < open.end(); ++slot) {
+        if (!table_.knows(open, slot)) continue;
+        const SlotPair pair = open[slot];
+        for (std::uint32_t d = 0; d < 2; ++d) {
             const PlacedBody& source = bodies[d == 0 ? pair.first : pair.second];
             const auto& blocks = source.shape->data().vertex_blocks;
-            for (const auto& [lane, triangle] : cached_of(own, cached))
+            for (const auto& [lane, triangle] : cached_of(table_.hot_in(slot).kept[d], cached))
                 rays.push_back({pair, d == 0, blocks[lane / VERTEX_LANES].vertex[lane % VERTEX_LANES], triangle});
         }
     }
 }
 
-std::vector<std::byte> CoherentRays::export_state(Device& device, std::span<const SlotPair> pairs) {
+std::vector<std::byte> CoherentRays::export_state(Device& device, const PairSlots& open, const PairList& pairs) {
     std::vector<std::byte> bytes;
     const std::vector<kernels::CachedRay> cached = read_cached_rays(device);
-    for (const SlotPair& pair : pairs) {
-        const std::optional<std::size_t> place = table_.place(pair);
-        if (!place) continue;
-        Moving moving{pair.first, pair.second, table_.state(*place), table_.hot(*place)};
+    for (std::size_t i = 0; i < pairs.size(); ++i) {
+        const std::uint32_t slot = pairs.slots[i];
+        if (!table_.knows(open, slot)) continue;
+        Moving moving{static_cast<std::uint32_t>(i), table_.state_in(slot), table_.hot_in(slot)};
         moving.state.tested = step_ - moving.state.tested; // as long ago; every device counts its own steps
         put_bytes(bytes, moving);
         for (const Kept& own : moving.hot.kept)
@@ -352,7 +352,7 @@ std::vector<std::byte> CoherentRays::export_state(Device& device, std::span<cons
     return bytes;
 }
 
-void CoherentRays::import_state(Device& device, std::span<const std::byte> bytes) {
+void CoherentRays::import_state(Device& device, const PairList& pairs, std::span<const std::byte> bytes) {
     cached_.extend(device, cached_count_);
     std::vector<kernels::CachedRay> cached;
     while (!bytes.empty()) {
@@ -362,7 +362,7 @@ void CoherentRays::import_state(Device& device, std::span<const std::byte> bytes
             own.first = static_cast<std::uint32_t>(cached_count_ + cached.size());
             for (std::uint32_t i = 0; i < own.count; ++i) cached.push_back(take_bytes<kernels::CachedRay>(bytes));
         }
-        table_.import_state({moving.first, moving.second}, moving.state, moving.hot);
+        table_.import_state(pairs.pairs[moving.pair], pairs.slots[moving.pair], moving.state, moving.hot);
     }
     cached_.append(device, std::span<const kernels::CachedRay>(cached));
     cached_count_ += cached.size();

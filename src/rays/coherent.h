@@ -42,12 +42,12 @@ public:
     }
 
     /// The state kept for some pairs of the last step, for another part to go on with. Between two steps.
-    std::vector<std::byte> export_state(Device& device, std::span<const SlotPair> pairs);
-    /// Adds such state, before the step that first has these pairs.
-    void import_state(Device& device, std::span<const std::byte> bytes);
+    std::vector<std::byte> export_state(Device& device, const PairSlots& open, const PairList& pairs);
+    /// Adds such state, before the step that first has these pairs: the same, in the slots that they have here.
+    void import_state(Device& device, const PairList& pairs, std::span<const std::byte> bytes);
 
-    /// Adds what is kept for some pairs of the last step; bodies as in it.
-    void list_kept_rays(Device& device, std::span<const PlacedBody> bodies, std::span<const SlotPair> pairs,
+    /// Adds what is kept for the pairs of the last step that are still open; bodies as in it.
+    void list_kept_rays(Device& device, std::span<const PlacedBody> bodies, const PairSlots& open,
                         std::vector<KeptRay>& rays);
 
     /// Adds what the last step did.
@@ -81,7 +81,7 @@ private:
         Kept kept[2];
     };
     struct Moving { ///< a pair between two devices; its cached rays follow
-        BodySlot first, second;
+        std::uint32_t pair; ///< its place among those that move
         PairState state;
         Hot hot;
     };

@@ -141,17 +141,7 @@ void DuePairs::check_slice(const Update& update, CertifiedPairs& table, std::uin
         const double way = speculative ? update.motion.pair_way(update.pairs[i]) : 0;
         return way > double(slack.margin) ? way : 0;
     };
-    // What is held of rays lies where those of the last step lie, and this pair has none there any more.
-    const auto let_rest = [&](std::uint32_t i) {
-        for (Candidates& own : table.state(i).directions) own.rays.held = false;
-    };
     const auto wants = [&](std::uint32_t i, Slack& slack) {
-        const auto [first, second] = update.pairs[i];
-        const bool rests =
-            update.may_rest && slack.known && !update.moved.is_marked(first) && !update.moved.is_marked(second);
-        if (rests && !slack.rests) let_rest(i);
-        slack.rests = rests;
-        if (rests) return false;
         const Motion::Bound bound = update.motion.pair_bound(update.pairs[i]);
         slack.metres -= bound.moved;
         slack.edges -= bound.nearer;

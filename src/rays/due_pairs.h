@@ -11,10 +11,10 @@
 
 namespace raycontact {
 
-/// The rays that one direction of a pair had in a step. held: `Held` data was stored for them.
+/// The rays that one direction of a pair had in a step.
 struct CandidateRays {
     std::uint32_t first = 0, count = 0;
-    bool held = false;
+    std::uint64_t held = 0; ///< the step that stored `Held` data for them; 0: none did
 };
 
 /// What the certified method keeps for one direction of a pair: the vertex blocks near its target, its candidates, and
@@ -55,7 +55,6 @@ struct Slack {
     bool apart = false;      ///< as AskedPair's, while its near edges last
     bool all = false;        ///< its near edges have those that hide little, too (docs/internals/edges.md)
     bool has_points = false; ///< it has near vertices
-    bool rests = false;      ///< nothing was asked about it in this step, as neither body moved
 };
 
 /// A direction of a pair that has work in this step: rays to decide, blocks to test, or a list to make.

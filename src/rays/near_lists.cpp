@@ -5,7 +5,7 @@
 #include "shape/shape_data.h"
 
 #include <algorithm>
-#include <numeric>
+#include <functional>
 
 namespace raycontact {
 
@@ -24,8 +24,7 @@ void NearLists::clear() {
 void NearLists::find(const Update& update, std::span<const Search> due, CertifiedPairs& table, RayBatch& batch) {
     if (due.empty()) {
         resize(update.device, 0, pairs_, next_, margins_, ahead_, least_);
-        directed_.clear();
-        found_.set(update.executor, {}, {}, 0);
+        found_.set(update.executor, {}, std::identity(), 0);
         return rays_.rest();
     }
     for (std::size_t first = 0; first < due.size(); first += pairs_at_once)
@@ -36,8 +35,6 @@ void NearLists::find_some(const Update& update, std::span<const Search> due, Cer
     const bool move = std::ranges::any_of(due, &Search::moves);
     resize(update.device, 2 * due.size(), pairs_, margins_, ahead_, least_);
     next_.resize(update.device, move ? pairs_.size() : 0);
-    directed_.resize(2 * due.size());
-    std::iota(directed_.begin(), directed_.end(), 0U);
     const bool points = kept_ == &CertifiedPair::points;
     update.executor.each(due.size(), 128, [&](std::uint32_t k) {
         for (std::uint32_t side = 0; side < 2; ++side) {
@@ -58,7 +55,7 @@ void NearLists::find_some(const Update& update, std::span<const Search> due, Cer
         update.device.queue().read(pieces);
         check_sums(batch.sums);
     } while (!rays_.had_room(update.device, batch));
-    found_.set(update.executor, rays_.found().values(), directed_, due.size());
+    found_.set(update.executor, rays_.found().values(), std::identity(), due.size());
     for (std::size_t k = 0; k < due.size(); ++k) {
         const auto [a, b] = update.pairs[due[k].pair];
         const double clear = std::min(
@@ -82,11 +79,11 @@ void NearLists::find_some(const Update& update, std::span<const Search> due, Cer
 std::uint64_t NearLists::bytes() const {
     return edges_.capacity() * sizeof(kernels::NearEdge) + rays_.bytes() + found_.all().size_bytes()
            + next_.size() * sizeof(kernels::DirectedPair)
-           + pairs_.size() * (sizeof(kernels::DirectedPair) + 3 * sizeof(float) + sizeof(kernels::uint));
+           + pairs_.size() * (sizeof(kernels::DirectedPair) + 3 * sizeof(float));
 }
 
 void NearLists::trim() {
-    free_all(directed_, pairs_, next_, margins_, ahead_, least_, found_);
+    free_all(pairs_, next_, margins_, ahead_, least_, found_);
     rays_ = NearRays(rays_.sources());
 }
 

@@ -43,8 +43,7 @@ public:
 private:
     void find_some(const Update& update, std::span<const Search> due, CertifiedPairs& table, RayBatch& batch);
 
-    std::vector<std::uint32_t> directed_; ///< 0, 1, 2 and so on
-    Array<kernels::DirectedPair> pairs_;  ///< both directions of some of those due
+    Array<kernels::DirectedPair> pairs_; ///< both directions of some of those due
     Array<kernels::DirectedPair> next_;   ///< where they will be, if any moves
     Array<float> margins_, ahead_, least_;
     NearRays rays_;

@@ -39,7 +39,8 @@ struct RayBatch {
 
     Count count{0};
     const Array<kernels::DirectedPair>* pairs = nullptr; ///< Ray::pair is a place in it
-    std::span<const std::uint32_t> directed;             ///< of these: their directed indices among the step's pairs
+    /// Of these: their directed indices among the pairs that are asked about; empty: they are 2 x slot and so on.
+    std::span<const std::uint32_t> directed;
     Array<kernels::Ray> rays;
     Array<kernels::Hit> hits;
     Columns outcomes; ///< a column for each sum of contact_sum (record_hit())

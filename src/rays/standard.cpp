@@ -29,7 +29,7 @@ void StandardRays::begin(const Update& update, RayBatch& batch) {
     pairs_.place(update, update.settings.is_speculative());
     batch.resize(update.device, std::max(batch.rays.size(), least_room));
     batch.pairs = &pairs_.placed();
-    batch.directed = pairs_.directed();
+    batch.directed = {};
     cast(update, batch);
 }
 
@@ -50,11 +50,11 @@ bool StandardRays::had_room(Device& device, RayBatch& batch) {
     return blocks_had && rays <= room;
 }
 
-void StandardRays::count(const RayBatch& batch, std::size_t pairs, StepStats& stats) const {
+void StandardRays::count(const RayBatch& batch, StepStats& stats) const {
     const std::uint64_t found = batch.sums[RayBatch::block_sum].sums[0];
     stats.details.vertices += VERTEX_LANES * found;
     stats.details.rays += batch.sums[RayBatch::ray_sum].sums[1];
-    stats.details.pairs_full += 2 * pairs;
+    stats.details.pairs_full += 2 * pairs_.count();
     stats.pair_bytes += pairs_.bytes() + found * (sizeof(kernels::PairBlock) + 3 * sizeof(kernels::uint))
                         + std::uint64_t{batch.sums[RayBatch::ray_sum].sums[0]} * RayBatch::bytes_of_ray;
 }

@@ -24,7 +24,7 @@ public:
     const DevicePairs& pairs() const { return pairs_; }
 
     /// Adds what the last step did.
-    void count(const RayBatch& batch, std::size_t pairs, StepStats& stats) const;
+    void count(const RayBatch& batch, StepStats& stats) const;
     /// After a step: frees what the next makes anew.
     void trim() { search_ = BlockSearch(); }
 

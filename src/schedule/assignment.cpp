@@ -5,66 +5,102 @@
 
 namespace raycontact {
 
-void Assignment::assign(std::span<const SlotPair> pairs, Balance& balance) {
-    pairs_ = pairs;
-    if (lists_.size() == 1) return;
-    const bool same = std::ranges::equal(pairs, open_);
-    if (same && !given_away_) return;
-    if (!same) {
-        next_parts_.resize(pairs.size());
-        auto old = open_.begin();
-        for (std::size_t i = 0; i < pairs.size(); ++i) {
-            while (old != open_.end() && *old < pairs[i]) ++old;
-            const bool stays = old != open_.end() && *old == pairs[i];
-            next_parts_[i] = stays ? parts_[static_cast<std::size_t>(old - open_.begin())]
-                                   : static_cast<std::uint32_t>(balance.part_for_new_pair());
-        }
-        parts_.swap(next_parts_);
-        open_.assign(pairs.begin(), pairs.end());
+void Assignment::assign(const OpenPairs& pairs, Balance& balance) {
+    pairs_ = &pairs;
+    if (alone()) return;
+    const PairSlots& all = pairs.slots();
+    if (!all.changes().is_next(seen_)) {
+        for (Own& own : parts_) own.open.clear();
+        places_.clear();
     }
-    make_lists();
+    places_.resize(all.end());
+    all.changes().each_since(seen_, all.end(), [&](std::uint32_t slot) {
+        take(slot);
+        if (all.is_open(slot)) put(slot, balance.part_for_new_pair());
+    });
 }
 
-// One part alone needs no lists.
+void Assignment::put(std::uint32_t slot, std::size_t part) {
+    Own& own = parts_[part];
+    const std::uint32_t place = own.open.open(pairs_->slots()[slot]);
+    own.scene_slots.resize(own.open.end());
+    own.scene_slots[place] = slot;
+    places_[slot] = {static_cast<std::uint32_t>(part), place};
+}
+
+void Assignment::take(std::uint32_t slot) noexcept {
+    if (places_[slot].part != none) parts_[places_[slot].part].open.close(places_[slot].slot);
+    places_[slot] = {};
+}
+
+// The first part keeps its slots: what it knows of them stays.
 void Assignment::add_part() {
-    if (lists_.size() == 1) {
-        open_.assign(pairs_.begin(), pairs_.end());
-        parts_.assign(pairs_.size(), 0);
+    if (alone()) {
+        const PairSlots& all = pairs_->slots();
+        parts_.front().open = all;
+        places_.resize(all.end());
+        parts_.front().scene_slots.resize(all.end());
+        for (std::uint32_t slot = 0; slot < all.end(); ++slot) {
+            parts_.front().scene_slots[slot] = slot;
+            places_[slot] = all.is_open(slot) ? Place{0, slot} : Place{};
+        }
+        seen_ = all.changes().now();
     }
-    lists_.emplace_back();
-    make_lists();
+    parts_.emplace_back();
 }
 
-void Assignment::make_lists() {
-    given_away_ = true; // until the lists are whole
-    for (auto& list : lists_) list.clear();
-    for (std::size_t i = 0; i < open_.size(); ++i) lists_[parts_[i]].push_back(open_[i]);
-    given_away_ = false;
-}
-
-std::span<const SlotPair> Assignment::pairs_of(std::size_t part) const {
-    if (lists_.size() == 1) return pairs_;
-    return lists_[part];
-}
-
-std::vector<std::vector<SlotPair>> Assignment::give_away(std::span<const std::size_t> from, Balance& balance) {
-    std::vector<std::vector<SlotPair>> given(lists_.size());
-    for (std::size_t i = 0; i < open_.size(); ++i) {
-        if (std::ranges::find(from, parts_[i]) == from.end()) continue;
-        const std::size_t to = balance.part_for_new_pair();
-        parts_[i] = static_cast<std::uint32_t>(to);
-        given[to].push_back(open_[i]);
+void Assignment::ask(const PairList& asked) {
+    asked_ = &asked;
+    if (alone()) return;
+    for (Own& own : parts_) own.asked.resize(0);
+    for (std::size_t i = 0; i < asked.size(); ++i) {
+        const auto [part, slot] = places_[asked.slots[i]];
+        parts_[part].asked.add(asked.pairs[i], slot);
     }
-    given_away_ = true;
+}
+
+PairList Assignment::all_on(std::size_t part) const {
+    const PairSlots& open = parts_[part].open;
+    std::vector<OpenPair> sorted;
+    for (std::uint32_t slot = 0; slot < open.end(); ++slot)
+        if (open.is_open(slot)) sorted.push_back({open[slot], slot});
+    std::ranges::sort(sorted);
+    PairList list;
+    for (const auto& [pair, slot] : sorted) list.add(pair, slot);
+    return list;
+}
+
+std::vector<PairList> Assignment::give_away(std::span<const std::size_t> from, Balance& balance) {
+    std::vector<OpenPair> going; // by the slots of the scene
+    for (std::uint32_t slot = 0; slot < places_.size(); ++slot)
+        if (places_[slot].part != none && std::ranges::find(from, places_[slot].part) != from.end())
+            going.push_back({pairs_->slots()[slot], slot});
+    std::ranges::sort(going);
+    std::vector<PairList> given(parts_.size());
+    for (const auto& [pair, slot] : going) {
+        take(slot);
+        put(slot, balance.part_for_new_pair());
+        given[places_[slot].part].add(pair, places_[slot].slot);
+    }
     return given;
 }
 
-void Assignment::move(std::span<const SlotPair> moving, std::size_t to) {
-    auto at = open_.begin();
-    for (const SlotPair& pair : moving) {
-        at = std::lower_bound(at, open_.end(), pair);
-        parts_[static_cast<std::size_t>(at - open_.begin())] = static_cast<std::uint32_t>(to);
+void Assignment::move(PairList& moving, std::size_t from, std::size_t to) {
+    for (std::uint32_t& own : moving.slots) {
+        const std::uint32_t slot = parts_[from].scene_slots[own];
+        take(slot);
+        put(slot, to);
+        own = places_[slot].slot;
     }
+}
+
+void Assignment::step_done() noexcept {
+    for (Own& own : parts_) own.open.step_done();
+}
+
+void Assignment::forget() noexcept {
+    seen_ = 0;
+    for (Own& own : parts_) own.open.forget();
 }
 
 } // namespace raycontact

@@ -1,42 +1,66 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "pairs/open_pairs.h"
 #include "schedule/balance.h"
-#include "slot_pair.h"
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 namespace raycontact {
 
-/// Which part each pair is on. A pair stays where it is while it is open (paper section 4), unless it is moved.
+/// Which part each pair is on. A pair stays where it is while it is open (paper section 4), unless it is moved. Of
+/// several parts each numbers its own pairs.
 class Assignment {
 public:
-    explicit Assignment(std::size_t parts) : lists_(parts) {}
+    explicit Assignment(std::size_t parts) : parts_(parts) {}
     /// One more part, the last, without pairs. After an assign() of the same step.
     void add_part();
 
-    /// pairs: of a step, sorted, each once; valid until the next call. New pairs go where the load is least.
-    void assign(std::span<const SlotPair> pairs, Balance& balance);
-    /// Those of a part, in the same order, as the last make_lists() found them.
-    std::span<const SlotPair> pairs_of(std::size_t part) const;
-    /// The part of pairs[i].
-    std::size_t part_of(std::size_t i) const { return lists_.size() == 1 ? 0 : parts_[i]; }
+    /// pairs: of a step; valid until the next call. New pairs go where the load is least.
+    void assign(const OpenPairs& pairs, Balance& balance);
+    /// What of a sorted list is on each part, for asked_of(). The list stays valid for the step.
+    void ask(const PairList& asked);
 
-    /// Gives the pairs of some parts to the others, as if they were new. Returns who got which, by part, sorted.
-    std::vector<std::vector<SlotPair>> give_away(std::span<const std::size_t> from, Balance& balance);
-    /// moving: of the last assign(), sorted.
-    void move(std::span<const SlotPair> moving, std::size_t to);
-    /// After give_away() or move(), unless an assign() follows.
-    void make_lists();
+    const PairSlots& open_on(std::size_t part) const { return alone() ? pairs_->slots() : parts_[part].open; }
+    /// In order, by the slots of the part.
+    const PairList& asked_of(std::size_t part) const { return alone() ? *asked_ : parts_[part].asked; }
+    /// Where the pair in a slot of the scene is.
+    std::size_t part_of(std::uint32_t slot) const { return alone() ? 0 : places_[slot].part; }
+    /// All that are on a part, in order, by its slots.
+    PairList all_on(std::size_t part) const;
+
+    /// Gives the pairs of some parts to the others, as if they were new. Returns who got which, by part, in order.
+    std::vector<PairList> give_away(std::span<const std::size_t> from, Balance& balance);
+    /// moving: of all_on(). They get the slots of the other part.
+    void move(PairList& moving, std::size_t from, std::size_t to);
+
+    /// Once all parts have begun the step: what comes after this is for the next one.
+    void step_done() noexcept;
+    /// All parts begin anew.
+    void forget() noexcept;
 
 private:
-    std::span<const SlotPair> pairs_;
-    std::vector<SlotPair> open_; ///< a copy of pairs_
-    std::vector<std::uint32_t> parts_, next_parts_;
-    std::vector<std::vector<SlotPair>> lists_;
-    bool given_away_ = false; ///< since lists_ were made
+    static constexpr std::uint32_t none = NONE;
+    struct Place {
+        std::uint32_t part = none, slot = none;
+    };
+    struct Own {
+        PairSlots open;
+        std::vector<std::uint32_t> scene_slots; ///< by slot
+        PairList asked;
+    };
+    bool alone() const { return parts_.size() == 1; }
+    void put(std::uint32_t slot, std::size_t part);
+    void take(std::uint32_t slot) noexcept;
+
+    const OpenPairs* pairs_ = nullptr;
+    const PairList* asked_ = nullptr;
+    std::vector<Own> parts_;
+    std::vector<Place> places_; ///< by slot of the scene
+    SlotChanges::Seen seen_ = 0;
 };
 
 } // namespace raycontact

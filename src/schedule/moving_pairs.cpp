@@ -8,8 +8,9 @@
 
 namespace raycontact {
 
-MovingPairs choose_moving(std::span<const SlotPair> pairs, std::span<const Contact> contacts, double share) {
-    if (share >= 1) return {{pairs.begin(), pairs.end()}, 1};
+MovingPairs choose_moving(const PairList& list, std::span<const Contact> contacts, double share) {
+    const std::span<const SlotPair> pairs = list.pairs;
+    if (share >= 1) return {list, 1};
     std::vector<std::uint64_t> weights(pairs.size(), 1); // in contacts, and one more
     std::unordered_map<BodySlot, std::uint64_t> weight_of_body;
     std::uint64_t all = 0;
@@ -38,7 +39,7 @@ MovingPairs choose_moving(std::span<const SlotPair> pairs, std::span<const Conta
     std::uint64_t moved = 0;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         if (!chosen.contains(pairs[i].first) && !chosen.contains(pairs[i].second)) continue;
-        moving.pairs.push_back(pairs[i]);
+        moving.pairs.add(pairs[i], list.slots[i]);
         moved += weights[i];
     }
     if (all > 0) moving.share = static_cast<double>(moved) / static_cast<double>(all);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "slot_pair.h"
+#include "pairs/pair_slots.h"
 
 #include <raycontact/contact.h>
 
@@ -10,15 +10,15 @@
 
 namespace raycontact {
 
-/// The pairs that should leave a part, sorted.
+/// The pairs that should leave a part, in order.
 struct MovingPairs {
-    std::vector<SlotPair> pairs;
+    PairList pairs;
     double share = 0; ///< of the part's load
 };
 
 /// Chooses about the given share of a part's load: all pairs of one body, then of the next, first those with the least
-/// state to be moved. pairs: the part's, sorted. contacts: of the last step, sorted; what a pair costs and keeps is
+/// state to be moved. pairs: the part's, in order. contacts: of the last step, sorted; what a pair costs and keeps is
 /// taken to grow with them.
-MovingPairs choose_moving(std::span<const SlotPair> pairs, std::span<const Contact> contacts, double share);
+MovingPairs choose_moving(const PairList& pairs, std::span<const Contact> contacts, double share);
 
 } // namespace raycontact

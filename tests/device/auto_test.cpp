@@ -42,7 +42,7 @@ std::size_t fail_in_trial(Method method, Fault fault, std::size_t at) {
     script->start(fault, at);
     Stepper alone(crowd, automatic(method, Features::vertices));
     Stepper tried(crowd, automatic(method, Features::vertices), fake(script, false));
-    MovedBodies moved;
+    SlotChanges moved;
     std::size_t warned = 0;
     for (int step = 0; step < 5; ++step) {
         if (step == 1) tried.turn();
@@ -53,9 +53,9 @@ std::size_t fail_in_trial(Method method, Fault fault, std::size_t at) {
         moved.forget();
         // Rays that are followed begin anew on the CPU.
         if (method == Method::standard || method == Method::certified) {
-            EXPECT_TRUE(same(tried.contacts, alone.contacts)) << where;
+            EXPECT_TRUE(same(tried.contacts(), alone.contacts())) << where;
         }
-        EXPECT_GT(tried.contacts.size(), 20u) << where;
+        EXPECT_GT(tried.contacts().size(), 20u) << where;
         EXPECT_EQ(tried.stats.pairs, crowd.pairs.size()) << where;
         warned += tried.stats.warnings.size();
         crowd.move();
@@ -97,8 +97,8 @@ TEST(AutoDevice, IsWhatIsLeft) {
         opened.push_back(open_fake("fake:0", first, true));
         NarrowPhase narrow(automatic(Method::certified, Features::vertices), std::move(opened), fake(second, false));
         for (const auto& shape : crowd.shapes) narrow.parts().add_shape(shape);
-        MovedBodies moved;
-        std::vector<Contact> contacts;
+        SlotChanges moved;
+        OpenPairs pairs;
         StepStats stats;
         std::uint64_t lost = 0;
         for (int step = 0; step < 12; ++step) {
@@ -107,9 +107,11 @@ TEST(AutoDevice, IsWhatIsLeft) {
             if (step == 4) failing->start(Fault::lost, 0);
             // The first part, which has none, asks its device for nothing: it fails once it is told of a shape.
             if (step == 6) narrow.parts().add_shape(prepared_shape(scenes::scene_model("knot", 300).mesh));
-            narrow.step(crowd.bodies, moved, crowd.pairs, contacts, stats);
+            pairs.set_all(narrow.parts().executor(), crowd.pairs);
+            narrow.step(crowd.bodies, moved, pairs, stats);
+            pairs.step_done();
             lost += stats.devices_lost;
-            EXPECT_TRUE(same(contacts, alone.step(crowd, moved))) << step;
+            EXPECT_TRUE(same(narrow.contacts().all(), alone.step(crowd, moved))) << step;
             moved.forget();
             crowd.move();
         }
@@ -135,7 +137,7 @@ TEST(AutoDevice, IsTheCpuWhereThereIsNoOther) {
                               }};
     for (const Opener& opener : openers) {
         Stepper scene(crowd, automatic(Method::certified, Features::vertices), opener);
-        MovedBodies moved;
+        SlotChanges moved;
         asked = 0;
         for (int step = 0; step < 6; ++step) {
             if (step == 3) {
@@ -147,7 +149,7 @@ TEST(AutoDevice, IsTheCpuWhereThereIsNoOther) {
             const bool told = step == 3 && &opener != &openers[0];
             ASSERT_EQ(scene.stats.warnings.size(), told ? 1u : 0u) << step;
             EXPECT_EQ(scene.stats.devices_lost, 0u);
-            EXPECT_GT(scene.contacts.size(), 50u);
+            EXPECT_GT(scene.contacts().size(), 50u);
             crowd.move();
         }
         EXPECT_EQ(asked, 1);
@@ -175,7 +177,7 @@ TEST(AutoDevice, HasTheShapesOfTheOther) {
         Stepper alone(crowd, settings), turned(crowd, settings, fake(std::make_shared<Script>(), shares_memory));
         const auto gone = Shape::make(scenes::scene_model("gear", 150).mesh);
         const auto late = Shape::make(scenes::scene_model("knot", 150).mesh);
-        MovedBodies moved;
+        SlotChanges moved;
         for (int step = 0; step < 14; ++step) {
             if (step == 2) turned.turn();
             if (step == 8) turned.turn();

@@ -3,16 +3,19 @@
 // after it, too.
 #include "box_changes.h"
 #include "device/fake.h"
+#include "device/listed_pairs.h"
 #include "device/moving_crowd.h"
 #include "narrow_phase.h"
 #include "prepared_shape.h"
 
+#include <array>
 #include <gtest/gtest.h>
 
 namespace raycontact {
 namespace {
 
 using device_test::Fault;
+using device_test::ListedPairs;
 using device_test::MovingCrowd;
 using device_test::open_fake;
 using device_test::same;
@@ -38,17 +41,20 @@ public:
         : scripts(make_scripts(devices)), narrow(settings_of(method), open(shares_memory)) {
         for (const auto& shape : crowd.shapes) narrow.parts().add_shape(shape);
     }
-    const std::vector<Contact>& step(const MovingCrowd& crowd) { return step(crowd, crowd.pairs); }
-    const std::vector<Contact>& step(const MovingCrowd& crowd, std::span<const SlotPair> pairs) {
-        narrow.step(crowd.bodies, moved, pairs, contacts, stats);
+    std::span<const Contact> step(const MovingCrowd& crowd) { return step(crowd, crowd.pairs); }
+    std::span<const Contact> step(const MovingCrowd& crowd, std::span<const SlotPair> listed) {
+        pairs.set_all(narrow.parts().executor(), listed);
+        narrow.step(crowd.bodies, moved, pairs, stats);
+        pairs.step_done();
         moved.forget();
-        return contacts;
+        return contacts();
     }
+    std::span<const Contact> contacts() const { return narrow.contacts().all(); }
 
     std::vector<std::shared_ptr<Script>> scripts;
     NarrowPhase narrow;
-    MovedBodies moved;
-    std::vector<Contact> contacts;
+    SlotChanges moved;
+    OpenPairs pairs;
     StepStats stats;
 
 private:
@@ -75,24 +81,28 @@ public:
     std::vector<Contact> step(const MovingCrowd& crowd, const std::vector<SlotPair>& gone) {
         std::vector<SlotPair> stay;
         std::ranges::set_difference(crowd.pairs, gone, std::back_inserter(stay));
-        std::vector<Contact> contacts = contacts_of(first_, crowd, stay), others = contacts_of(second_, crowd, gone);
+        std::vector<Contact> contacts = contacts_of(first_, first_pairs_, crowd, stay),
+                             others = contacts_of(second_, second_pairs_, crowd, gone);
         contacts.insert(contacts.end(), others.begin(), others.end());
         std::ranges::stable_sort(contacts, {}, [](const Contact& c) { return pair_of(c); });
         return contacts;
     }
 
 private:
-    std::vector<Contact> contacts_of(Part& part, const MovingCrowd& crowd, std::span<const SlotPair> pairs) {
+    std::vector<Contact> contacts_of(Part& part, ListedPairs& own, const MovingCrowd& crowd,
+                                     std::span<const SlotPair> pairs) {
         moved_.forget();
-        part.begin(crowd.bodies, moved_, pairs, settings_);
+        part.begin(crowd.bodies, moved_, own.next(pairs), settings_);
         std::vector<Contact> contacts;
         part.end(contacts);
+        own.step_done();
         return contacts;
     }
 
     Settings settings_;
-    MovedBodies moved_;
+    SlotChanges moved_;
     Part first_{open_device("cpu", 1)}, second_{open_device("cpu", 1)};
+    ListedPairs first_pairs_, second_pairs_;
 };
 
 constexpr int last_step = 4, faulty_step = 2;
@@ -109,7 +119,8 @@ std::size_t run_with_fault(Method method, Fault fault, std::size_t at, bool shar
                                   + std::to_string(at) + ", step " + std::to_string(step);
         Script& script = *rig.scripts[1];
         if (step == faulty_step) script.start(fault, at);
-        const std::vector<Contact>& found = rig.step(crowd);
+        const std::vector<SlotPair> own = rig.narrow.assignment().all_on(1).pairs;
+        const std::span<const Contact> found = rig.step(crowd);
         if (step == faulty_step) {
             calls = script.calls.size();
             const bool lost = script.failed > 0;
@@ -118,8 +129,7 @@ std::size_t run_with_fault(Method method, Fault fault, std::size_t at, bool shar
             EXPECT_EQ(rig.stats.details.work.size(), 3u);
             if (lost) {
                 EXPECT_NE(rig.stats.warnings[0].find("fake:1"), std::string::npos) << rig.stats.warnings[0];
-                const auto own = rig.narrow.assignment().pairs_of(1);
-                gone.assign(own.begin(), own.end());
+                gone = own;
                 EXPECT_GT(gone.size(), 10u);
                 EXPECT_EQ(rig.stats.details.work[1].pairs, 0u);
             }
@@ -163,15 +173,16 @@ std::size_t run_with_two_faults(Method method, std::size_t second, std::size_t a
             rig.scripts[0]->start(Fault::lost, 3);
             rig.scripts[second]->start(Fault::lost, at);
         }
-        const std::vector<Contact>& found = rig.step(crowd);
+        std::vector<SlotPair> had[3];
+        for (std::size_t part = 0; part < 3; ++part) had[part] = rig.narrow.assignment().all_on(part).pairs;
+        const std::span<const Contact> found = rig.step(crowd);
         if (step == faulty_step) {
             const bool both = rig.scripts[second]->failed > 0;
             EXPECT_EQ(rig.stats.devices_lost, both ? 2u : 1u);
             if (!both) calls = rig.scripts[second]->calls.size();
             for (const std::size_t part : {std::size_t{0}, second}) {
                 if (rig.scripts[part]->failed == 0) continue;
-                const auto own = rig.narrow.assignment().pairs_of(part);
-                gone.insert(gone.end(), own.begin(), own.end());
+                gone.insert(gone.end(), had[part].begin(), had[part].end());
             }
             std::ranges::sort(gone);
         }
@@ -223,13 +234,13 @@ TEST(Faults, WithNoDeviceLeftTheStepFailsAndTheNextBeginsAnew) {
             EXPECT_NE(text.find("fake:0"), std::string::npos) << text;
             EXPECT_NE(text.find("fake:1"), std::string::npos) << text;
         }
-        EXPECT_TRUE(rig.contacts.empty());
+        EXPECT_TRUE(rig.contacts().empty());
         for (const auto& script : rig.scripts) script->start(Fault::none, 0);
         rig.step(crowd);
         if (!depends_on_state(method)) {
-            EXPECT_TRUE(same(rig.contacts, Reference(crowd, method).step(crowd, {})));
+            EXPECT_TRUE(same(rig.contacts(), Reference(crowd, method).step(crowd, {})));
         }
-        EXPECT_GT(rig.contacts.size(), 50u);
+        EXPECT_GT(rig.contacts().size(), 50u);
     }
 }
 
@@ -246,7 +257,7 @@ TEST(Faults, InFindingPairs) {
                 BoxChanges changes;
                 changes.make_room(200);
                 const std::vector<BroadPhaseInput::Filter> filters(200);
-                std::vector<SlotPair> pairs, expected;
+                std::vector<SlotPair> pairs;
                 // As a scene finds them.
                 const auto find = [&] {
                     for (bool found = false; !found;) {
@@ -260,8 +271,9 @@ TEST(Faults, InFindingPairs) {
                 const auto expect = [&] {
                     world.forget();
                     world.update(parts.executor(), crowd.bodies, {}, rig.narrow.settings());
-                    BroadPhase().find(parts.executor(), world.tree(), {world.boxes(), filters}, expected);
-                    EXPECT_TRUE(pairs == expected) << devices << " devices, call " << at;
+                    BroadPhase host;
+                    const auto expected = host.find(parts.executor(), world.tree(), {world.boxes(), filters});
+                    EXPECT_TRUE(std::ranges::equal(pairs, expected)) << devices << " devices, call " << at;
                     EXPECT_GT(pairs.size(), 200u);
                 };
                 find();
@@ -306,7 +318,7 @@ TEST(Faults, InAddingAShape) {
         rig.step(crowd);
         EXPECT_EQ(rig.stats.warnings.size(), lost ? 1u : 0u);
         EXPECT_EQ(rig.narrow.parts().left(), lost ? 1u : 2u);
-        EXPECT_TRUE(same(rig.contacts, Reference(crowd, Method::standard).step(crowd, {})));
+        EXPECT_TRUE(same(rig.contacts(), Reference(crowd, Method::standard).step(crowd, {})));
         EXPECT_TRUE(lost || at > 0);
     }
 }
@@ -318,8 +330,10 @@ struct Uneven {
     std::uint64_t moved = 0, lost = 0, contacts = 0;
     std::size_t calls = 0;
     int moved_in = -1;
+    std::vector<std::array<std::vector<SlotPair>, 2>> had; ///< by step: the pairs of each device
 };
-Uneven run_uneven(Method method, int faulty, std::size_t device, std::size_t at) {
+// whole: the same without a fault.
+Uneven run_uneven(Method method, int faulty, std::size_t device, std::size_t at, const Uneven& whole) {
     MovingCrowd crowd(14, 1.0);
     Rig rig(crowd, method, 2);
     Reference reference(crowd, method);
@@ -327,22 +341,23 @@ Uneven run_uneven(Method method, int faulty, std::size_t device, std::size_t at)
     std::vector<SlotPair> gone;
     for (int step = 0; step < 16; ++step) {
         if (step == 1) { // most pairs of device 1 are over
-            const auto own = rig.narrow.assignment().pairs_of(1);
+            const std::vector<SlotPair> own = rig.narrow.assignment().all_on(1).pairs;
             std::vector<SlotPair> over(own.begin() + 5, own.end()), rest;
             std::ranges::set_difference(crowd.pairs, over, std::back_inserter(rest));
             crowd.pairs = rest;
         }
-        const auto own = rig.narrow.assignment().pairs_of(device);
-        const std::vector<SlotPair> before(own.begin(), own.end());
         if (step == faulty) rig.scripts[device]->start(Fault::lost, at);
-        const std::vector<Contact>& found = rig.step(crowd);
+        const std::span<const Contact> found = rig.step(crowd);
         if (step == faulty) result.calls = rig.scripts[device]->calls.size();
         if (rig.stats.details.pairs_moved > 0 && result.moved_in < 0) result.moved_in = step;
         if (rig.stats.devices_lost > 0) {
             // Pairs that had moved to it before it failed were new in that step as well.
-            const auto now = rig.narrow.assignment().pairs_of(device);
-            gone = now.empty() ? before : std::vector<SlotPair>(now.begin(), now.end());
+            const int had_in = rig.stats.details.pairs_moved > 0 ? step : step - 1;
+            gone = whole.had[static_cast<std::size_t>(had_in)][device];
         }
+        if (rig.stats.devices_lost == 0)
+            result.had.push_back(
+                {rig.narrow.assignment().all_on(0).pairs, rig.narrow.assignment().all_on(1).pairs});
         result.moved += rig.stats.details.pairs_moved;
         result.lost += rig.stats.devices_lost;
         result.contacts += found.size();
@@ -355,15 +370,15 @@ Uneven run_uneven(Method method, int faulty, std::size_t device, std::size_t at)
 
 TEST(Balance, MovesPairsWithTheirState) {
     for (const Method method : methods) {
-        const Uneven whole = run_uneven(method, -1, 0, 0);
+        const Uneven whole = run_uneven(method, -1, 0, 0, {});
         EXPECT_GT(whole.moved, 10u) << to_string(method);
         EXPECT_GE(whole.moved_in, 8);
         EXPECT_EQ(whole.lost, 0u);
         EXPECT_GT(whole.contacts, 500u);
         for (std::size_t device = 0; device < 2; ++device) {
-            const std::size_t calls = run_uneven(method, whole.moved_in, device, 1000000).calls;
+            const std::size_t calls = run_uneven(method, whole.moved_in, device, 1000000, whole).calls;
             for (std::size_t at = 0; at < calls; ++at) {
-                EXPECT_EQ(run_uneven(method, whole.moved_in, device, at).lost, 1u);
+                EXPECT_EQ(run_uneven(method, whole.moved_in, device, at, whole).lost, 1u);
                 if (testing::Test::HasFailure()) return;
             }
         }

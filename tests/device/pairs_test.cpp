@@ -90,8 +90,9 @@ public:
     /// Returns the number of pairs.
     std::size_t compare() {
         world_.update(*opened_.executor, bodies_, next_, settings_);
-        std::vector<SlotPair> expected;
-        BroadPhase().find(*opened_.executor, world_.tree(), {world_.boxes(), filters_}, expected);
+        BroadPhase broad_phase;
+        const auto found = broad_phase.find(*opened_.executor, world_.tree(), {world_.boxes(), filters_});
+        const std::vector<SlotPair> expected(found.begin(), found.end());
         const DeviceBroadPhase::Changes changes =
             changes_.list(*opened_.executor, bodies_, next_, filters_, world_, settings_, broad_phase_.slots());
         device_.take_work();

@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <gtest/gtest.h>
 #include <tuple>
-#include <vector>
 
 namespace raycontact::device_test {
 
@@ -26,7 +25,7 @@ inline std::array<std::uint64_t, 8> bits(const Contact& c) {
 }
 
 /// All contacts, bit for bit.
-inline ::testing::AssertionResult same(const std::vector<Contact>& found, const std::vector<Contact>& expected) {
+inline ::testing::AssertionResult same(std::span<const Contact> found, std::span<const Contact> expected) {
     if (found.size() != expected.size())
         return ::testing::AssertionFailure() << found.size() << " contacts, not " << expected.size();
     for (std::size_t i = 0; i < found.size(); ++i) {

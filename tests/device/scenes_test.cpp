@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One hash of every scene, method and caster, whatever the device; and what a scene may hold little or nothing of.
+#include "device/listed_pairs.h"
 #include "device/turning.h"
 #include "device/work.h"
 #include "reference/meshes.h"
@@ -19,6 +20,7 @@
 
 using namespace raycontact;
 using namespace raycontact::reference;
+using raycontact::device_test::ListedPairs;
 using raycontact::device_test::same;
 using raycontact::device_test::tested_device;
 
@@ -218,7 +220,8 @@ TEST(parts, of_different_devices_hand_pairs_over) {
             bodies[i].centred = centred_pose(*bodies[i].shape, bodies[i].pose);
             for (BodySlot j = i + 1; j < crowd.bodies; ++j) pairs.emplace_back(i, j);
         }
-        MovedBodies moved;
+        SlotChanges moved;
+        ListedPairs all_pairs, cpu_pairs, their_pairs;
         std::vector<bool> is_elsewhere(pairs.size());
         std::size_t contacts = 0;
         for (int step = 0; step < 12; ++step) {
@@ -230,21 +233,25 @@ TEST(parts, of_different_devices_hand_pairs_over) {
                 }
                 (is_elsewhere[i] ? away : stay).push_back(pairs[i]);
             }
-            const auto going = on_cpu.export_state(bodies, go), arriving = elsewhere.export_state(bodies, come);
-            elsewhere.import_state(bodies, going);
-            on_cpu.import_state(bodies, arriving);
+            const PairList from_cpu = cpu_pairs.of(go), from_elsewhere = their_pairs.of(come);
+            const auto going = on_cpu.export_state(bodies, from_cpu),
+                       arriving = elsewhere.export_state(bodies, from_elsewhere);
+            const Part::Pairs next_here = cpu_pairs.next(stay), next_there = their_pairs.next(away);
+            elsewhere.import_state(bodies, their_pairs.of(from_cpu.pairs), going);
+            on_cpu.import_state(bodies, cpu_pairs.of(from_elsewhere.pairs), arriving);
             for (PlacedBody& body : bodies) {
                 body.pose.translation = body.pose.translation + crowd.speed * random.in_ball();
                 body.centred = centred_pose(*body.shape, body.pose);
             }
             moved.forget(); // every body may have moved
-            whole.begin(bodies, moved, pairs, settings);
-            on_cpu.begin(bodies, moved, stay, settings);
-            elsewhere.begin(bodies, moved, away, settings);
+            whole.begin(bodies, moved, all_pairs.next(pairs), settings);
+            on_cpu.begin(bodies, moved, next_here, settings);
+            elsewhere.begin(bodies, moved, next_there, settings);
             std::vector<Contact> expected, here, there;
             whole.end(expected);
             on_cpu.end(here);
             elsewhere.end(there);
+            for (ListedPairs* list : {&all_pairs, &cpu_pairs, &their_pairs}) list->step_done();
             contacts += there.size();
             here.insert(here.end(), there.begin(), there.end());
             std::ranges::stable_sort(here, {}, [](const Contact& c) { return pair_of(c); });

@@ -19,10 +19,13 @@ public:
         : narrow(settings, cpu(), std::move(open_other)) {
         for (const auto& shape : crowd.shapes) narrow.parts().add_shape(shape);
     }
-    const std::vector<Contact>& step(const MovingCrowd& crowd, const MovedBodies& moved) {
-        narrow.step(crowd.bodies, moved, crowd.pairs, contacts, stats);
-        return contacts;
+    std::span<const Contact> step(const MovingCrowd& crowd, const SlotChanges& moved) {
+        pairs.set_all(narrow.parts().executor(), crowd.pairs);
+        narrow.step(crowd.bodies, moved, pairs, stats);
+        pairs.step_done();
+        return contacts();
     }
+    std::span<const Contact> contacts() const { return narrow.contacts().all(); }
     /// Tells the choice of such times that the pairs must go to the other part.
     void turn() {
         DeviceChoice& choice = *narrow.choice();
@@ -32,7 +35,7 @@ public:
     }
 
     NarrowPhase narrow;
-    std::vector<Contact> contacts;
+    OpenPairs pairs;
     StepStats stats;
 
 private:
@@ -55,8 +58,9 @@ inline Settings automatic(Method method, Features features, bool speculative = f
 /// moving: one body of so many moves in a step.
 inline void expect_the_cpus_contacts(const Settings& settings, const Opener& open_other, std::size_t moving) {
     MovingCrowd crowd(18, 1.0);
+    for (PlacedBody& body : crowd.bodies) body.next = body.centred;
     Stepper alone(crowd, settings), turned(crowd, settings, open_other);
-    MovedBodies moved;
+    SlotChanges moved;
     moved.make_room(crowd.bodies.size());
     std::size_t here = 0, there = 0, contacts = 0;
     const std::vector<SlotPair> all = crowd.pairs;
@@ -67,8 +71,8 @@ inline void expect_the_cpus_contacts(const Settings& settings, const Opener& ope
             if (step == at) turned.turn();
         crowd.pairs = all;
         if (step % 3 == 1) crowd.pairs.erase(crowd.pairs.begin() + 4, crowd.pairs.begin() + 30);
-        const auto& expected = alone.step(crowd, moved);
-        const auto& found = turned.step(crowd, moved);
+        const auto expected = alone.step(crowd, moved);
+        const auto found = turned.step(crowd, moved);
         ASSERT_TRUE(same(found, expected)) << where;
         EXPECT_EQ(turned.stats.contacts_new, alone.stats.contacts_new) << where;
         EXPECT_EQ(turned.stats.contacts_lost, alone.stats.contacts_lost) << where;

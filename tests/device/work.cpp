@@ -3,6 +3,7 @@
 
 #include "box_changes.h"
 #include "device/cpu/device.h"
+#include "device/listed_pairs.h"
 #include "part/part.h"
 #include "prepared_shape.h"
 #include "reference/meshes.h"
@@ -41,7 +42,8 @@ void place_centres(std::vector<PlacedBody>& bodies) {
 Outcome run_part(Part& part, const Work& work, const std::vector<Way>& ways) {
     for (const auto& shape : work.shapes) part.shapes().add(shape);
     Outcome outcome;
-    MovedBodies moved;
+    SlotChanges moved;
+    ListedPairs pairs;
     for (const Way& way : ways) {
         Settings settings;
         settings.method = way.method;
@@ -56,9 +58,10 @@ Outcome run_part(Part& part, const Work& work, const std::vector<Way>& ways) {
             place_centres(bodies);
             moved.forget();
             if (way.method == Method::standard && part.can_find_in_double()) find_pairs(part, bodies);
-            part.begin(bodies, moved, work.pairs, settings);
+            part.begin(bodies, moved, pairs.next(work.pairs), settings);
             std::vector<Contact> found;
             part.end(found);
+            pairs.step_done();
             outcome.contacts.insert(outcome.contacts.end(), found.begin(), found.end());
             StepStats stats;
             part.count(stats);

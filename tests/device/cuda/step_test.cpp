@@ -29,12 +29,13 @@ std::vector<Contact> step_on(std::vector<OpenDevice> devices, const MovingCrowd&
     settings.execution.schedule = Schedule::counted;
     NarrowPhase narrow(settings, std::move(devices));
     for (const auto& shape : crowd.shapes) narrow.parts().add_shape(shape);
-    std::vector<Contact> contacts;
-    const MovedBodies moved;
+    const SlotChanges moved;
+    OpenPairs pairs;
+    pairs.set_all(narrow.parts().executor(), crowd.pairs);
     before();
-    narrow.step(crowd.bodies, moved, crowd.pairs, contacts, stats);
+    narrow.step(crowd.bodies, moved, pairs, stats);
     after();
-    return contacts;
+    return *narrow.contacts().shared();
 }
 
 TEST_F(Step, is_complete_whichever_call_fails) {

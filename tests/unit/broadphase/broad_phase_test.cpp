@@ -32,14 +32,21 @@ std::vector<SlotPair> all_pairs(const std::vector<Box>& boxes, const std::vector
 struct Finder {
     BoxTree tree;
     BroadPhase broad_phase;
+    OpenPairs open;
     void find(Executor& executor, const BroadPhaseInput& input, std::vector<SlotPair>& pairs) {
         tree.build(executor, input.boxes);
-        broad_phase.find(executor, tree, input, pairs);
+        const std::span<const SlotPair> found = broad_phase.find(executor, tree, input);
+        pairs.assign(found.begin(), found.end());
+        open.set_all(executor, found);
     }
+    // Whether the pairs are others.
     bool update(Executor& executor, const BroadPhaseInput& input, std::span<const BodySlot> changed,
                 std::vector<SlotPair>& pairs) {
         tree.update(executor, input.boxes, changed);
-        return broad_phase.update(executor, tree, input, changed, pairs);
+        open.step_done();
+        broad_phase.update(executor, tree, input, changed, open);
+        pairs = open.all(executor).pairs;
+        return open.have_changed();
     }
 };
 
@@ -178,7 +185,7 @@ TEST(PairSorter, SortsListsInAnyOrder) {
     std::mt19937 random(9);
     for (const std::uint32_t threads : {1u, 3u}) {
         Executor executor(threads);
-        PairSorter sorter;
+        PairSorter<SlotPair> sorter;
         for (const std::size_t count : {0u, 1u, 200u, 60000u}) {
             constexpr BodySlot bodies = 700;
             std::uniform_int_distribution<BodySlot> body(0, bodies - 1);

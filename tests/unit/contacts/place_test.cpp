@@ -9,6 +9,7 @@
 #include "shape/shape_data.h"
 
 #include <algorithm>
+#include <functional>
 #include <gtest/gtest.h>
 #include <numeric>
 
@@ -17,10 +18,8 @@ namespace {
 
 ByPair<kernels::LocalContact> by_pair(Executor& executor, std::span<const kernels::LocalContact> local,
                                       std::span<const SlotPair> pairs) {
-    std::vector<std::uint32_t> directed(2 * pairs.size());
-    std::iota(directed.begin(), directed.end(), 0u);
     ByPair<kernels::LocalContact> sorted;
-    sorted.set(executor, local, directed, pairs.size());
+    sorted.set(executor, local, std::identity(), pairs.size());
     return sorted;
 }
 

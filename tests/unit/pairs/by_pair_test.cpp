@@ -31,7 +31,8 @@ TEST(ByPair, IsInTheOrderOfThePairsWhateverTheirSlots) {
                 found.push_back({i, vertex, 0, 0, 0, {}});
                 expected.emplace_back(directed[i], vertex++);
             }
-        all.set(executor, found, directed, pairs);
+        all.set(
+            executor, std::span<const kernels::LocalContact>(found), [&](std::uint32_t i) { return directed[i]; }, pairs);
         std::sort(expected.begin(), expected.end()); // those of a pair keep their order
         ASSERT_EQ(all.all().size(), expected.size());
         std::vector<std::size_t> counts(2 * std::size_t{pairs});

@@ -32,7 +32,7 @@ Pose moved_a_little(const Pose& pose, Random& random) {
 
 // As if any body might have moved.
 void update(Motion& motion, std::span<const PlacedBody> bodies) {
-    static MovedBodies moved;
+    static SlotChanges moved;
     moved.forget();
     Executor executor(1);
     motion.update(executor, bodies, moved);
@@ -60,7 +60,7 @@ private:
         last_.assign(bodies.begin(), bodies.end());
     }
 
-    MovedBodies moved_;
+    SlotChanges moved_;
     std::vector<PlacedBody> last_;
 };
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "pairs/open_pairs.h"
 #include "pairs/pair_table.h"
 #include "pairs/range_pool.h"
 
@@ -29,6 +30,7 @@ struct State {
 void keep_pairs(BodySlot bodies, std::uint32_t most, int steps) {
     Random random(1);
     Executor executor(2);
+    OpenPairs open;
     PairTable<State, Hot> table;
     std::map<SlotPair, double> model; // a mark for each open pair
     double mark = 0;
@@ -47,7 +49,12 @@ void keep_pairs(BodySlot bodies, std::uint32_t most, int steps) {
         std::multiset<double> closed, expected;
         for (const auto& [pair, its_mark] : model)
             if (!wanted.contains(pair)) expected.insert(its_mark);
-        table.match(executor, pairs, [&](State& state) { closed.insert(state.mark); });
+        open.set_all(executor, pairs);
+        EXPECT_EQ(table.knows(open.slots()), step > 0);
+        table.begin(open.slots(), open.all(executor).slots, [&](State& state) {
+            if (state.mark != 0) closed.insert(state.mark);
+        });
+        open.step_done();
         ASSERT_EQ(closed, expected);
         std::map<SlotPair, double> next;
         for (std::size_t i = 0; i < pairs.size(); ++i) {
@@ -76,7 +83,8 @@ void keep_pairs(BodySlot bodies, std::uint32_t most, int steps) {
     EXPECT_EQ(table.bytes(), 0u);
     bool closed = false;
     const std::vector<SlotPair> one{{0, 1}};
-    table.match(executor, one, [&](State&) { closed = true; });
+    open.set_all(executor, one);
+    table.begin(open.slots(), open.all(executor).slots, [&](State&) { closed = true; });
     EXPECT_FALSE(closed) << "what was cleared is not open any more";
     EXPECT_EQ(table.state(0).mark, 0.0);
 }
@@ -91,7 +99,9 @@ TEST(PairTable, AsksOfThePairsThatWantItInTheirOrder) {
     PairTable<State, Hot> table;
     std::vector<SlotPair> pairs;
     for (BodySlot i = 0; i < 500; ++i) pairs.emplace_back(i, i + 1);
-    table.match(executor, pairs, [](State&) {});
+    OpenPairs open;
+    open.set_all(executor, pairs);
+    table.begin(open.slots(), open.all(executor).slots, [](State&) {});
     Random random(3);
     std::vector<bool> wanted(pairs.size());
     for (auto&& one : wanted) one = random.below(3) == 0;
@@ -164,25 +174,32 @@ TEST(RangePool, GivesNothingForNothingAndRefusesTooMuch) {
     EXPECT_EQ(pool.in_use(), 1ull << 31) << "a refusal changes nothing";
 }
 
-// Once few of many are left, slots are given anew, and what is kept stays with its pair.
-TEST(PairTable, KeepsWhatIsLeftOfMany) {
-    Executor executor(2);
+// What another table kept goes to the pair that has it now, if that is still open.
+TEST(PairTable, TakesWhatAnotherKept) {
+    PairSlots open;
     PairTable<State, Hot> table;
-    std::vector<SlotPair> many, few;
-    for (BodySlot i = 0; i < 5000; ++i) many.emplace_back(i, i + 1);
-    for (BodySlot i = 100; i < 5000; i += 50) few.emplace_back(i, i + 1);
     const auto ignore = [](State&) {};
-    table.match(executor, many, ignore);
-    for (std::size_t i = 0; i < many.size(); ++i) table.state(i).mark = table.hot(i).left = double(many[i].first);
-    EXPECT_EQ(table.slots(), many.size());
-    table.match(executor, few, ignore);
-    EXPECT_EQ(table.slots(), few.size());
-    table.match(executor, many, ignore);
-    for (std::size_t i = 0; i < many.size(); ++i) {
-        const bool stayed = i >= 100 && i % 50 == 0;
-        ASSERT_EQ(table.state(i).mark, stayed ? double(i) : 0.0);
-        ASSERT_EQ(table.hot(i).left, stayed ? double(i) : -1.0);
-    }
+    const std::uint32_t first = open.open({1, 2}), gone = open.open({3, 4});
+    table.import_state({1, 2}, first, {5, 1}, {6});
+    table.import_state({3, 4}, gone, {7, 1}, {8});
+    open.close(gone);
+    EXPECT_EQ(open.open({7, 8}), gone);
+    EXPECT_FALSE(table.knows(open, first)) << "before the table has begun";
+    const std::uint32_t slots[] = {first, gone};
+    table.begin(open, slots, ignore);
+    EXPECT_EQ(table.state(0).mark, 5);
+    EXPECT_EQ(table.hot(0).left, 6);
+    EXPECT_EQ(table.state(1).mark, 0);
+    open.step_done();
+    EXPECT_TRUE(table.knows(open, first));
+    open.close(gone);
+    const std::uint32_t next = open.open({3, 4});
+    EXPECT_EQ(next, gone);
+    EXPECT_TRUE(table.knows(open, first));
+    EXPECT_FALSE(table.knows(open, next));
+    open.forget();
+    table.begin(open, slots, ignore);
+    EXPECT_EQ(table.state(0).mark, 0) << "what has missed a step begins afresh";
 }
 
 } // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Pairs that change their part between two steps have the contacts that they would have had, bit for bit.
+#include "device/listed_pairs.h"
 #include "device/same_contacts.h"
 #include "mesh/vector.h"
 #include "part/part.h"
@@ -67,7 +68,8 @@ TEST(Part, PairsThatChangeItGoOnAsTheyWere) {
         const auto whole = crowd.make_part(0), a = crowd.make_part(0), b = crowd.make_part(1);
         Random random(9);
         std::vector<bool> on_b(crowd.pairs.size());
-        MovedBodies moves;
+        SlotChanges moves;
+        device_test::ListedPairs pairs, pairs_a, pairs_b;
         std::size_t moved = 0, contacts = 0, bytes = 0;
         for (int step = 0; step < 40; ++step) {
             // Any pair may change its part, in either direction.
@@ -80,24 +82,27 @@ TEST(Part, PairsThatChangeItGoOnAsTheyWere) {
                 }
                 (on_b[i] ? of_b : of_a).push_back(crowd.pairs[i]);
             }
-            const auto state_a = a->export_state(crowd.seen_by(*a), to_b),
-                       state_b = b->export_state(crowd.seen_by(*b), to_a);
-            a->import_state(crowd.seen_by(*a), state_b);
-            b->import_state(crowd.seen_by(*b), state_a);
+            PairList from_a = pairs_a.of(to_b), from_b = pairs_b.of(to_a);
+            const auto state_a = a->export_state(crowd.seen_by(*a), from_a),
+                       state_b = b->export_state(crowd.seen_by(*b), from_b);
+            const Part::Pairs next_a = pairs_a.next(of_a), next_b = pairs_b.next(of_b);
+            a->import_state(crowd.seen_by(*a), pairs_a.of(from_b.pairs), state_b);
+            b->import_state(crowd.seen_by(*b), pairs_b.of(from_a.pairs), state_a);
             bytes += state_a.size() + state_b.size();
 
             crowd.move(step % 5 == 4 ? 0.004 : 0.0004);
             const std::vector<PlacedBody> seen_whole = crowd.seen_by(*whole), seen_a = crowd.seen_by(*a),
                                           seen_b = crowd.seen_by(*b);
             moves.forget(); // every body may have moved
-            whole->begin(seen_whole, moves, crowd.pairs, settings);
-            a->begin(seen_a, moves, of_a, settings);
-            b->begin(seen_b, moves, of_b, settings);
+            whole->begin(seen_whole, moves, pairs.next(crowd.pairs), settings);
+            a->begin(seen_a, moves, next_a, settings);
+            b->begin(seen_b, moves, next_b, settings);
             std::vector<Contact> expected, found, others;
             whole->end(expected);
             a->end(found);
             b->end(others);
             found.insert(found.end(), others.begin(), others.end());
+            for (device_test::ListedPairs* list : {&pairs, &pairs_a, &pairs_b}) list->step_done();
             std::ranges::stable_sort(found, {}, [](const Contact& c) { return pair_of(c); });
             ASSERT_TRUE(device_test::same(found, expected)) << to_string(method) << ", step " << step;
             contacts += found.size();

@@ -5,6 +5,7 @@
 #include "part/pipeline.h"
 #include "shape/shape_data.h"
 
+#include "device/listed_pairs.h"
 #include "prepared_shape.h"
 #include "property/shapes.h"
 #include "reference/meshes.h"
@@ -40,14 +41,19 @@ public:
         pairs.emplace_back(bodies.size() - 2, bodies.size() - 1);
     }
     std::span<const AskedPair> find() {
-        const Update update{*opened_.device, *opened_.executor, *store_, bodies, moved_, pairs, motion_, settings_};
+        const Part::Pairs asked = listed_.next(pairs);
+        const Update update{*opened_.device, *opened_.executor, *store_, bodies, moved_, asked.open, asked.asked,
+                            asked.slots, motion_, settings_};
         pipeline_.begin(update);
         pipeline_.end(update);
+        listed_.step_done();
         return pipeline_.asked();
     }
     /// By pair: how far its bodies can move, either against the other, before an edge crosses that is not found now.
     std::vector<double> clear(double ahead, RayBatch& batch, NearRays& rays) {
-        const Update update{*opened_.device, *opened_.executor, *store_, bodies, moved_, pairs, motion_, settings_};
+        const Part::Pairs asked = listed_.next(pairs);
+        const Update update{*opened_.device, *opened_.executor, *store_, bodies, moved_, asked.open, asked.asked,
+                            asked.slots, motion_, settings_};
         batch.resize(update.device, 0);
         Array<kernels::DirectedPair> placed;
         Array<float> beyond;
@@ -82,7 +88,8 @@ private:
     OpenDevice opened_;
     std::unique_ptr<ShapeStore> store_;
     Settings settings_;
-    MovedBodies moved_;
+    SlotChanges moved_;
+    device_test::ListedPairs listed_;
     Motion motion_;
     Pipeline pipeline_;
 };

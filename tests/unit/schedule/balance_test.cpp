@@ -108,7 +108,7 @@ TEST(Balance, DropsAPart) {
 
 TEST(MovingPairs, AreThoseOfTheBodiesWithLeastToCarry) {
     // Body 0 touches all others; body 5 has the most contacts.
-    const std::vector<SlotPair> pairs{{0, 1}, {0, 2}, {0, 3}, {0, 4}, {0, 5}, {4, 5}};
+    const PairList pairs{{{0, 1}, {0, 2}, {0, 3}, {0, 4}, {0, 5}, {4, 5}}, {9, 8, 7, 6, 5, 4}};
     std::vector<Contact> contacts(12);
     for (std::size_t i = 0; i < contacts.size(); ++i) {
         contacts[i].body_a = {i < 4 ? 0u : 4u};
@@ -116,9 +116,10 @@ TEST(MovingPairs, AreThoseOfTheBodiesWithLeastToCarry) {
     }
     // 18 in all: {0, 5} weighs 5, {4, 5} 9, the others 1 each.
     const MovingPairs some = choose_moving(pairs, contacts, 0.12);
-    EXPECT_EQ(some.pairs, (std::vector<SlotPair>{{0, 1}, {0, 2}}));
+    EXPECT_EQ(some.pairs.pairs, (std::vector<SlotPair>{{0, 1}, {0, 2}}));
+    EXPECT_EQ(some.pairs.slots, (std::vector<std::uint32_t>{9, 8}));
     EXPECT_DOUBLE_EQ(some.share, 2.0 / 18);
-    EXPECT_TRUE(choose_moving(pairs, contacts, 0).pairs.empty());
+    EXPECT_TRUE(choose_moving(pairs, contacts, 0).pairs.pairs.empty());
     EXPECT_EQ(choose_moving({}, {}, 0.5).share, 0);
 }
 

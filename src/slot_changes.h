@@ -2,7 +2,6 @@
 #pragma once
 
 #include "executor/executor.h"
-#include "slot_pair.h"
 
 #include <algorithm>
 #include <cstdint>
@@ -12,19 +11,31 @@
 
 namespace raycontact {
 
-/// Which bodies are new, gone or elsewhere since the last step, or expected elsewhere at the next one. What keeps
-/// something of each body asks each step for these alone.
-class MovedBodies {
+/// Which slots of bodies, or of pairs, have changed since the last step: a body is new, gone, elsewhere or expected
+/// elsewhere at the next step; a pair is open or closed. What keeps something by slot asks each step for these alone.
+class SlotChanges {
 public:
+    using Slot = std::uint32_t;
     /// What a user has seen: a step's number.
     using Seen = std::uint64_t;
 
-    /// For bodies in slots below this, so that mark() cannot fail.
+    SlotChanges() = default;
+    SlotChanges(SlotChanges&&) noexcept = default;
+    SlotChanges& operator=(SlotChanges&&) noexcept = default;
+    /// With the room that mark() needs.
+    SlotChanges(const SlotChanges& other) : marked_(other.marked_), step_(other.step_) {
+        list_.reserve(marked_.size());
+        list_.assign(other.list_.begin(), other.list_.end());
+    }
+    SlotChanges& operator=(const SlotChanges& other) { return *this = SlotChanges(other); }
+    ~SlotChanges() = default;
+
+    /// For slots below this, so that mark() cannot fail.
     void make_room(std::size_t slots) {
         if (marked_.size() < slots) marked_.resize(slots, 0);
         if (list_.capacity() < slots) list_.reserve(marked_.capacity());
     }
-    /// Frees the memory of slots from this on, which have no body; any other may be elsewhere then.
+    /// Frees the memory of slots from this on, which are empty; any other may have changed then.
     void cut(std::size_t slots) noexcept {
         forget();
         marked_.resize(std::min(slots, marked_.size()));
@@ -35,14 +46,15 @@ public:
         } catch (const std::bad_alloc&) {
         }
     }
-    void mark(BodySlot body) noexcept {
-        if (marked_[body] != 0) return;
+    void mark(Slot slot) noexcept {
+        if (marked_[slot] != 0) return;
         if (list_.size() == list_.capacity()) return forget(); // after a cut that lacked memory
-        marked_[body] = 1;
-        list_.push_back(body);
+        marked_[slot] = 1;
+        list_.push_back(slot);
     }
-    bool is_marked(BodySlot body) const { return marked_[body] != 0; }
-    std::span<const BodySlot> list() const { return list_; }
+    bool is_marked(Slot slot) const { return marked_[slot] != 0; }
+    /// In the order of their marks, each once.
+    std::span<const Slot> list() const { return list_; }
 
     /// The step that is being made.
     Seen now() const { return step_; }
@@ -54,11 +66,11 @@ public:
         next_step(1);
         return step_ - 1;
     }
-    /// Any body may be elsewhere, as after a step that failed half-way.
+    /// Any slot may have changed, as after a step that failed half-way.
     void forget() noexcept { next_step(2); }
 
-    /// Calls work(slot) for the bodies that moved since the step that was seen; for all below `slots` if that is not
-    /// the last one. Returns whether they were all. Marked slots from `slots` on have no body any more.
+    /// Calls work(slot) for those that changed since the step that was seen; for all below `slots` if that is not the
+    /// last one. Returns whether they were all. Marked slots from `slots` on are empty.
     template <class Work>
     bool each_since(Seen& seen, std::size_t slots, Work&& work) const {
         return each_since(seen, slots, work, [](std::size_t count, auto&& one) {
@@ -88,12 +100,12 @@ private:
     }
 
     void next_step(Seen by) noexcept {
-        for (const BodySlot body : list_) marked_[body] = 0;
+        for (const Slot slot : list_) marked_[slot] = 0;
         list_.clear();
         step_ += by;
     }
 
-    std::vector<BodySlot> list_; ///< in the order of their marks
+    std::vector<Slot> list_; ///< in the order of their marks
     std::vector<char> marked_;   ///< by slot
     Seen step_ = 2;              ///< a user that has seen none has 0
 };
