@@ -115,11 +115,11 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, const SlotChanges& mo
         auto failed = parts_.run([&](std::size_t part) { find(part, bodies, moved); });
         assignment_.step_done();
         while (!failed.empty()) failed = replace(failed, stats);
-        merge();
+        std::vector<Contact>& found = merge();
         const ContactStore::Asked asked{!few_, asked_.pairs, pairs.closed()};
-        reducer_.run(executor, settings_, bodies, contacts_, merged_);
+        reducer_.run(executor, settings_, bodies, contacts_, found);
         stats.details.contacts_merged = reducer_.merged();
-        contacts_.replace(executor, asked, merged_);
+        contacts_.replace(executor, asked, found);
         if (!left_out_.all().empty() || !reducer_.left_out().empty())
             left_out_.replace(executor, asked, reducer_.left_out());
         seen_ = moved.now();
@@ -280,7 +280,7 @@ std::vector<KeptRay> NarrowPhase::kept_rays(std::span<const PlacedBody> bodies) 
 
 // Each part has the contacts of its own pairs, in order: those of a pair come behind all of pairs before it, on any
 // part.
-void NarrowPhase::merge() {
+std::vector<Contact>& NarrowPhase::merge() {
     std::size_t count = 0, parts = 0, any = 0;
     for (std::size_t i = 0; i < found_.size(); ++i) {
         count += found_[i].contacts.size();
@@ -288,8 +288,7 @@ void NarrowPhase::merge() {
         any = i;
         ++parts;
     }
-    merged_.resize(0);
-    if (parts == 1) return merged_.swap(found_[any].contacts);
+    if (parts <= 1) return found_[any].contacts;
     merged_.resize(count);
     for (std::size_t part = 0; part < found_.size(); ++part) {
         const std::vector<Contact>& own = found_[part].contacts;
@@ -307,6 +306,7 @@ void NarrowPhase::merge() {
                       merged_.begin() + std::ptrdiff_t(to));
         });
     }
+    return merged_;
 }
 
 void NarrowPhase::count(std::size_t pair_count, StepStats& stats) {

@@ -73,7 +73,7 @@ private:
     void find(std::size_t part, std::span<const PlacedBody> bodies, const SlotChanges& moved);
     std::vector<std::size_t> replace(const std::vector<std::size_t>& failed, StepStats& stats);
     std::vector<PairList> give_away(const std::vector<std::size_t>& failed, StepStats& stats);
-    void merge();
+    std::vector<Contact>& merge();
     void count(std::size_t pair_count, StepStats& stats);
     void trim(std::uint64_t pair_bytes);
 

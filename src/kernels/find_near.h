@@ -37,10 +37,22 @@ DEVICE float go_half_way(READS(DirectedPair) now, READS(DirectedPair) next, READ
     return 1.001f * (root_of(shift) + reach * root_of(turn));
 }
 
-// Metres within which an edge must be asked: the rounding of poses and corners, three perturbations by which the rule
-// moves vertices, and twice what the two directions of a pair differ by, since poses are rigid only to 1e-4. Directions
-// lie side by side. horizons: where edges are looked for, `ahead` and half their way beyond the margins; more, ahead:
-// null for 0. half_way: of the pairs on their way to `next`; both null: they stay.
+DEVICE float sizes_of(READS(DirectedPair) pair, READS(ShapeHeader) shapes) {
+    return DIAGONAL_TOLERANCES * (shapes[pair->source].tolerance + shapes[pair->target].tolerance);
+}
+
+// Metres that a point of the source may be off in the target's frame: by the rounding of the pose and of the point, and
+// by three perturbations by which the rule moves vertices.
+DEVICE float placed_within(READS(DirectedPair) pair, READS(ShapeHeader) shapes) {
+    READS(float) t = pair->translation;
+    const float apart = (magnitude_of(t[0]) + magnitude_of(t[1])) + magnitude_of(t[2]);
+    return 1.3e-6f * sizes_of(pair, shapes) + 2.0e-6f * apart;
+}
+
+// Metres within which an edge must be asked: how far points may be off, and twice what the two directions of a pair
+// differ by, since poses are rigid only to 1e-4. Directions lie side by side. horizons: where edges are looked for,
+// `ahead` and half their way beyond the margins; more, ahead: null for 0. half_way: of the pairs on their way to
+// `next`; both null: they stay.
 KERNEL void find_margins(COUNT(count), READS(DirectedPair) pairs, READS(DirectedPair) next, READS(float) more,
                          READS(float) ahead, READS(ShapeHeader) shapes, WRITES(float) margins, WRITES(float) horizons,
                          WRITES(DirectedPair) half_way) {
@@ -52,18 +64,17 @@ KERNEL void find_margins(COUNT(count), READS(DirectedPair) pairs, READS(Directed
             continue;
         }
         READS(float) r = there->rotation;
-        float shear = 0.0f, apart = 0.0f, off = 0.0f;
+        float shear = 0.0f, off = 0.0f;
         for (int i = 0; i < 3; ++i) {
             for (int j = 0; j < 3; ++j)
                 shear +=
                     magnitude_of(((r[i] * r[j] + r[3 + i] * r[3 + j]) + r[6 + i] * r[6 + j]) - (i == j ? 1.0f : 0.0f));
             READS(float) row = back->rotation + 3 * i;
             READS(float) t = there->translation;
-            apart += magnitude_of(t[i]);
             off += magnitude_of(((row[0] * t[0] + row[1] * t[1]) + row[2] * t[2]) + back->translation[i]);
         }
-        const float sizes = DIAGONAL_TOLERANCES * (shapes[there->source].tolerance + shapes[there->target].tolerance);
-        margins[p] = (more ? more[p] : 0.0f) + ((1.3e-6f * sizes + 2.0e-6f * apart) + (shear * sizes + 2.0f * off));
+        margins[p] =
+            (more ? more[p] : 0.0f) + (placed_within(there, shapes) + (shear * sizes_of(there, shapes) + 2.0f * off));
         horizons[p] = margins[p] + (ahead ? ahead[p] : 0.0f);
         if (next) horizons[p] += go_half_way(there, next + p, shapes, half_way + p);
     }

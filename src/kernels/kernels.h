@@ -15,5 +15,6 @@
 #include "kernels/find_vertices.h"
 #include "kernels/cast_rays.h"
 #include "kernels/find_near.h"
+#include "kernels/find_inside.h"
 #include "kernels/follow.h"
 #include "kernels/emit_contacts.h"

@@ -83,6 +83,13 @@ STRUCT(Face) {
 };
 WIRE_SIZE(Face, 16);
 
+// A connected component of a mesh: its lowest vertex, and its box.
+STRUCT(Component) {
+    float vertex[3];
+    float low[3], high[3];
+};
+WIRE_SIZE(Component, 36);
+
 STRUCT(Packed3) {
     float x, y, z;
 };
@@ -105,7 +112,8 @@ STRUCT(ShapeHeader) {
     ulong outside_cells;       // a bit for each cell, x fastest
     ulong clearances;          // x fastest
     ulong normal_cones;        // by triangle_lane (normal_cone.h); only where the host's memory is shared
-    uint triangle_block_count;
+    ulong components;
+    uint triangle_block_count, component_count;
     SourceTree vertices, edges;
     uint closed;
     uint outward;      // closed, winding number 1 inside, 0 outside: a vertex outside cannot touch
@@ -121,8 +129,9 @@ STRUCT(ShapeHeader) {
     uint cones_pay;                            // most triangles have normal-cone balls: it pays to test them
     float low[3], high[3];                     // the box
     float ray_reach; // metres that rays from its vertices may go beyond the bounds of an open mesh
+    uint unused;
 };
-WIRE_SIZE(ShapeHeader, 288);
+WIRE_SIZE(ShapeHeader, 304);
 
 #include "kernels/body_place.h"
 

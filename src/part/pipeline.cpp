@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <functional>
 
 namespace raycontact {
 
@@ -56,7 +57,8 @@ void Pipeline::trim() {
     coherent_.trim();
     edges_ = NearRays(edges_.sources());
     points_ = NearRays(points_.sources());
-    free_all(batch_, margins_, margins_seen_, device_margins_, found_, pairs_found_, local_, near_, near_points_, speculative_, asked_, asked_slices_);
+    free_all(batch_, inside_, margins_, margins_seen_, device_margins_, found_, pairs_found_, local_, near_,
+             near_points_, speculative_, asked_, asked_slices_);
 }
 
 // Turns hits into contacts in the targets' frames: counts them and writes them.
@@ -73,10 +75,11 @@ void Pipeline::gather(const Update& update) {
 // room: there is enough now, and they must be written again.
 bool Pipeline::read(const Update& update) {
     Device& device = update.device;
-    std::array<Piece, 7> pieces{batch_.totals.piece(batch_.sums), found_.piece(),
+    std::array<Piece, 8> pieces{batch_.totals.piece(batch_.sums), found_.piece(),
                                 casts_edges_ ? edges_.found().piece() : Piece{},
                                 casts_points_ ? points_.found().piece() : Piece{}};
     if (finds(update) == Finds::coherent) std::ranges::copy(coherent_.results(), pieces.begin() + 4);
+    if (casts_edges_) pieces.back() = inside_.piece();
     device.queue().read(pieces);
     check_sums(batch_.sums);
     return found_.take(device, batch_.sums[RayBatch::contact_sum].sums[0]);
@@ -101,6 +104,7 @@ void Pipeline::begin(const Update& update) {
     if ((casts_edges_ || casts_points_) && finds(update) == Finds::coherent) pairs_.place(update, casts_points_);
     if (casts_points_) set_margins(update);
     if (casts_edges_) cast_near(update, edges_);
+    if (casts_edges_) find_inside(update);
     if (casts_points_) cast_near(update, points_);
 }
 
@@ -125,6 +129,10 @@ void Pipeline::cast_near(const Update& update, NearRays& rays) {
         rays.cast(update, pairs.placed(), pairs.next_placed(), {device_margins_, {}, {}}, batch_);
     else
         rays.cast(update, pairs.placed(), {}, {{}, {}, {}}, batch_);
+}
+
+void Pipeline::find_inside(const Update& update) {
+    inside_.find(update, pairs_of(update).placed(), batch_.totals, RayBatch::inside_sum);
 }
 
 // All, on the device.
@@ -157,11 +165,13 @@ Update Pipeline::end(const Update& asked) {
         const bool all_cast = all_rays_had_room(asked);
         const bool all_edges = !casts_edges_ || edges_.had_room(asked.device, batch_);
         const bool all_points = !casts_points_ || points_.had_room(asked.device, batch_);
-        if (all_written && all_cast && all_edges && all_points) break;
+        const bool all_inside = !casts_edges_ || inside_.take(asked.device, batch_.sums[RayBatch::inside_sum]);
+        if (all_written && all_cast && all_edges && all_points && all_inside) break;
         if (!all_cast) cast_again(asked);
         gather(asked);
         if (!all_edges) cast_near(asked, edges_);
         if (!all_points) cast_near(asked, points_);
+        if (!all_inside) find_inside(asked);
     }
     if (finds(asked) == Finds::coherent) coherent_.keep(batch_);
     const Update update = list_pairs(asked);
@@ -170,12 +180,16 @@ Update Pipeline::end(const Update& asked) {
     const auto directed = [&](std::uint32_t i) { return rays_by_slot ? by_slot(i) : batch_.directed[i]; };
     local_.set(update.executor, found_.values(), directed, update.pairs.size());
     find_speculative(update);
-    if (casts_edges_) near_.set(update.executor, edges_.found().values(), by_slot, update.pairs.size());
+    if (casts_edges_) {
+        near_.set(update.executor, edges_.found().values(), by_slot, update.pairs.size());
+        inside_.mark(by_slot, update.pairs.size());
+    }
     if (update.settings.features == Features::edges && !casts_edges_) certified_.find_edges(update, local_, batch_);
     list_asked(update);
     return update;
 }
 
+// A device answers for all pairs: of most of them it finds nothing.
 Update Pipeline::list_pairs(const Update& asked) {
     if (finds(asked) != Finds::standard) {
         if (casts_edges_ || casts_points_) pairs_found_.set_places(asked.executor, asked.open, asked.slots);
@@ -185,12 +199,9 @@ Update Pipeline::list_pairs(const Update& asked) {
     pairs_found_.clear();
     pairs_found_.add(asked.executor, asked.open, found_.values(), directed);
     if (casts_points_) pairs_found_.add(asked.executor, asked.open, points_.found().values(), directed);
-    if (casts_edges_) { // TODO inside
-        std::vector<std::uint32_t> all;
-        for (std::uint32_t slot = 0; slot < asked.open.end(); ++slot)
-            if (asked.open.is_open(slot)) all.push_back(2 * slot);
-        pairs_found_.add(asked.executor, asked.open, std::span<const std::uint32_t>(all),
-                         [](std::uint32_t slot) { return slot; });
+    if (casts_edges_) {
+        pairs_found_.add(asked.executor, asked.open, edges_.found().values(), directed);
+        pairs_found_.add(asked.executor, asked.open, inside_.found(), std::identity());
     }
     pairs_found_.list(asked.executor, asked.open, asked.bodies.size());
     return asked.about(pairs_found_.pairs());
@@ -230,7 +241,8 @@ void Pipeline::list_asked(const Update& update) {
             asked.near = casts_edges_ ? std::array{near_.of(2 * i), near_.of(2 * i + 1)} : certified_.near(i);
             if (!casts_edges_) asked.apart = certified_.apart(i);
             // Without edges a pair has nothing more to tell, but that one body is inside the other.
-            asked.edges = !in_contact || !asked.near[0].empty() || !asked.near[1].empty();
+            const bool may_be_inside = !in_contact && (!casts_edges_ || inside_.has(i));
+            asked.edges = may_be_inside || !asked.near[0].empty() || !asked.near[1].empty();
         }
         if (asked.edges || comes_near) list.push_back(asked);
     });
@@ -272,7 +284,7 @@ void Pipeline::count(const Update& last, StepStats& stats) const {
     stats.details.side_tests += batch_.sums[RayBatch::contact_sum].sums[1];
     stats.details.rays_cast += batch_.sums[RayBatch::contact_sum].sums[2];
     stats.pair_bytes += asked_.size() * sizeof(AskedPair);
-    if (casts_edges_) stats.pair_bytes += edges_.bytes() + near_.all().size_bytes();
+    if (casts_edges_) stats.pair_bytes += edges_.bytes() + near_.all().size_bytes() + inside_.bytes();
     if (casts_points_) stats.pair_bytes += points_.bytes() + near_points_.all().size_bytes();
     switch (finds(last)) {
     case Finds::standard:

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "device/results.h"
+#include "edges/inside_search.h"
 #include "pairs/by_pair.h"
 #include "pairs/found_pairs.h"
 #include "pairs/near_edges.h"
@@ -54,6 +55,7 @@ private:
     void set_margins(const Update& update);
     void cast_near(const Update& update, NearRays& rays);
     Update list_pairs(const Update& asked);
+    void find_inside(const Update& update);
     void find_speculative(const Update& update);
     const DevicePairs& pairs_of(const Update& update) const;
     void list_asked(const Update& update);
@@ -66,6 +68,7 @@ private:
     DevicePairs pairs_; ///< all, where the method places only some
     RayBatch batch_;
     NearRays edges_{BlockSearch::Sources::edges}, points_{BlockSearch::Sources::points};
+    InsideSearch inside_;
     std::vector<float> margins_; ///< of speculative contacts, by directed pair of the device
     SlotChanges::Seen margins_seen_ = 0;
     Array<float> device_margins_;

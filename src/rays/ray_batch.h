@@ -12,7 +12,8 @@ namespace raycontact {
 /// of the step.
 struct RayBatch {
     /// What the scans of a step count: vertex blocks found; rays; contacts, side tests and rays cast in full; what a
-    /// method counts besides; edge blocks found; edges cast; faces near these; the same of vertices as points.
+    /// method counts besides; edge blocks found; edges cast; faces near these; the same of vertices as points; pairs
+    /// of which one body may have a part inside the other.
     enum Sum : std::size_t {
         block_sum,
         ray_sum,
@@ -24,6 +25,7 @@ struct RayBatch {
         point_block_sum,
         point_ray_sum,
         point_sum,
+        inside_sum,
         sum_count
     };
 

@@ -20,7 +20,7 @@ std::vector<float> measure_areas(const ShapeData& shape);
 /// Fills sharp_edges, longest_edge, hides, hides_most and vertex_triangle. Needs `neighbours`.
 void find_sharp_edges(ShapeData& shape, std::span<const Vec3> normals);
 
-/// Fills component_vertices. Needs vertex_triangle.
+/// Fills component_vertices and components. Needs vertex_triangle.
 void find_components(ShapeData& shape);
 
 /// Fills perturbations; needs the vertices' normals.

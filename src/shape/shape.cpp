@@ -230,10 +230,10 @@ std::uint64_t Shape::memory_bytes() const {
     return sizeof d + bytes(d.mesh.vertices) + bytes(d.mesh.triangles) + bytes(d.mesh.vertex_index)
            + bytes(d.mesh.triangle_index) + bytes(d.points) + bytes(d.vertex_normals) + bytes(d.vertex_areas)
            + bytes(d.sharp_edges) + bytes(d.hides) + bytes(d.vertex_triangle) + bytes(d.perturbations)
-           + bytes(d.component_vertices) + bytes(d.exit_distances) + bytes(d.neighbours) + bytes(d.triangle_blocks)
-           + bytes(d.file_vertices) + bytes(d.slivers.triangle_blocks) + bytes(d.slivers.nodes) + bytes(d.flat)
-           + bytes(d.faces) + bytes(d.nodes) + bytes(d.vertex_blocks) + bytes(d.clusters) + bytes(d.face_normals)
-           + (is_prepared() ? accelerators_of(*this)->bytes() : 0);
+           + bytes(d.component_vertices) + bytes(d.components) + bytes(d.exit_distances) + bytes(d.neighbours)
+           + bytes(d.triangle_blocks) + bytes(d.file_vertices) + bytes(d.slivers.triangle_blocks)
+           + bytes(d.slivers.nodes) + bytes(d.flat) + bytes(d.faces) + bytes(d.nodes) + bytes(d.vertex_blocks)
+           + bytes(d.clusters) + bytes(d.face_normals) + (is_prepared() ? accelerators_of(*this)->bytes() : 0);
 }
 
 } // namespace raycontact

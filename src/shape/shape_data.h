@@ -58,6 +58,7 @@ struct Shape::Data : TriangleTree {
     std::vector<kernels::Face> faces; ///< per triangle
     std::vector<kernels::VertexBlock> vertex_blocks;
     std::vector<kernels::ClusterBlock> clusters;
+    std::vector<kernels::Component> components; ///< as component_vertices
     std::vector<kernels::Packed3> face_normals; ///< outward unit, per triangle
     /// Of a clearance grid of one cell, until there are Accelerators: all that is known is outside of the box.
     std::vector<kernels::uint> clearances{0};
@@ -71,6 +72,7 @@ struct Shape::Data : TriangleTree {
         header.face_normals = host_place(face_normals);
         header.vertex_blocks = host_place(vertex_blocks);
         header.clusters = host_place(clusters);
+        header.components = host_place(components);
         header.clearances = host_place(clearances);
     }
 

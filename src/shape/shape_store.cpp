@@ -100,6 +100,7 @@ void ShapeStore::upload(Entry& entry, const Accelerators* more) {
         copy(array(data.nodes, header.nodes), array(data.triangle_blocks, header.triangle_blocks),
              array(data.faces, header.faces), array(data.face_normals, header.face_normals),
              array(data.vertex_blocks, header.vertex_blocks), array(data.clusters, header.clusters),
+             array(data.components, header.components),
              array(more != nullptr ? more->clearances : data.clearances, header.clearances),
              array(more != nullptr ? more->outside_cells : none, header.outside_cells));
         header.normal_cones = 0; // of no use there
@@ -135,6 +136,7 @@ void ShapeStore::upload_accelerators(Entry& entry, const Accelerators& more) {
         header.face_normals = before.face_normals;
         header.vertex_blocks = before.vertex_blocks;
         header.clusters = before.clusters;
+        header.components = before.components;
         copy(array(more.clearances, header.clearances), array(more.outside_cells, header.outside_cells));
         header.normal_cones = 0;
     }

@@ -53,9 +53,24 @@ void find_components(ShapeData& shape) {
         components.join(a, b);
         components.join(a, c);
     }
-    for (std::uint32_t v = 0; v < shape.points.size(); ++v)
-        if (components.of(v) == v && shape.vertex_triangle[v] != Shape::no_triangle)
+    std::vector<std::uint32_t> component_of(shape.points.size()); // by its lowest vertex
+    for (std::uint32_t v = 0; v < shape.points.size(); ++v) {
+        if (shape.vertex_triangle[v] == Shape::no_triangle) continue;
+        const std::uint32_t lowest = components.of(v);
+        const auto& [x, y, z] = shape.points[v];
+        const float at[3] = {x, y, z};
+        if (lowest == v) {
+            component_of[v] = static_cast<std::uint32_t>(shape.components.size());
             shape.component_vertices.push_back(v);
+            shape.components.push_back({{x, y, z}, {x, y, z}, {x, y, z}});
+        }
+        kernels::Component& own = shape.components[component_of[lowest]];
+        for (std::size_t k = 0; k < 3; ++k) {
+            own.low[k] = std::min(own.low[k], at[k]);
+            own.high[k] = std::max(own.high[k], at[k]);
+        }
+    }
+    shape.header.component_count = static_cast<kernels::uint>(shape.components.size());
 }
 
 } // namespace raycontact

@@ -25,10 +25,11 @@ constexpr Ceiling ceilings[] = {{Method::standard, 11, 1},
                                 {Method::certified, 16, 4},
                                 {Method::iterative, 14, 1},
                                 {Method::predictive, 14, 1},
-                                // Edges are read with the contacts of vertices.
-                                {Method::standard, 21, 1, Features::edges},
-                                {Method::iterative, 26, 1, Features::edges},
-                                {Method::predictive, 26, 1, Features::edges},
+                                // Edges are read with the contacts of vertices. Three launches more than at first
+                                // tell which pairs may be inside one another: the host asked all of them.
+                                {Method::standard, 24, 1, Features::edges},
+                                {Method::iterative, 29, 1, Features::edges},
+                                {Method::predictive, 29, 1, Features::edges},
                                 {Method::certified, 26, 5, Features::edges}};
 
 std::uint64_t median(std::vector<std::uint64_t> values) {

@@ -106,6 +106,7 @@ kernels::uint grain_of(KernelId kernel) {
     case KernelId::place_pairs:
     case KernelId::write_contacts:
     case KernelId::find_margins:
+    case KernelId::count_inside:
     case KernelId::write_edges:
     case KernelId::write_candidate_rays:
     case KernelId::write_near_rays:
