@@ -112,7 +112,7 @@ STRUCT(ShapeHeader) {
     ulong outside_cells;       // a bit for each cell, x fastest
     ulong clearances;          // x fastest
     ulong normal_cones;        // by triangle_lane (normal_cone.h); only where the host's memory is shared
-    ulong components;
+    ulong components;          // connected ones
     uint triangle_block_count, component_count;
     SourceTree vertices, edges;
     uint closed;

@@ -172,6 +172,69 @@ TEST(scenes, have_one_hash_with_edges) {
     }
 }
 
+// Small bodies in large ones, in a cavity, and beside them; of one body only a part is inside. A device tells which
+// pairs the host asks.
+std::vector<Contact> contacts_of_nested(Method method, const std::string& device, bool prepared, bool speculative) {
+    const auto joined = [](const Mesh& one, const Mesh& other) {
+        Mesh both = one;
+        both.vertices.insert(both.vertices.end(), other.vertices.begin(), other.vertices.end());
+        const auto first = static_cast<std::uint32_t>(one.vertices.size());
+        for (const auto& [a, b, c] : other.triangles) both.triangles.push_back({first + a, first + b, first + c});
+        return both;
+    };
+    Mesh cavity = box_mesh({0.6, 0.6, 0.6});
+    for (auto& triangle : cavity.triangles) std::swap(triangle[0], triangle[1]);
+    const Mesh small = box_mesh({0.1, 0.05, 0.05});
+    std::vector<std::shared_ptr<const Shape>> shapes;
+    for (const Mesh& mesh : {joined(box_mesh({1, 1, 1}), cavity), grid_box_mesh(8), small,
+                             joined(moved(small, {-9, 0, 0}), moved(small, {0.8, 0, 0}))})
+        shapes.push_back(prepared ? prepared_shape(mesh) : Shape::make(mesh));
+    Settings settings;
+    settings.method = method;
+    settings.features = Features::edges;
+    settings.speculative = speculative;
+    settings.execution.devices = device;
+    settings.execution.threads = 2;
+    Scene scene(settings);
+    Random random(41);
+    scene.add(shapes[0]);
+    Pose beside;
+    beside.translation = {1.5, -0.5, -0.5};
+    scene.add(shapes[1], beside);
+    std::vector<Pose> poses;
+    for (std::uint32_t i = 0; i < 40; ++i) {
+        poses.push_back(i % 4 == 0 ? Pose{} : random.rotation());
+        poses.back().translation =
+            i % 4 == 0 ? Vec3{} : Vec3{random.uniform(-1.3, 2.8), random.uniform(-1, 1), random.uniform(-1, 1)};
+        scene.add(shapes[i % 4 == 0 ? 3 : 2], poses.back());
+    }
+    std::vector<Contact> all;
+    for (int step = 0; step < 6; ++step) {
+        const std::span<const Contact> found = scene.find_contacts();
+        all.insert(all.end(), found.begin(), found.end());
+        for (std::uint32_t i = 0; i < poses.size(); ++i) {
+            poses[i].translation = poses[i].translation + 0.1 * random.in_ball();
+            scene.set_pose({i + 2}, poses[i]);
+        }
+    }
+    return all;
+}
+
+TEST(scenes, have_the_cpus_bodies_inside_others) {
+    for (const bool prepared : {true, false})
+        for (const bool speculative : {false, true}) {
+            const auto contacts = [&](Method method, const std::string& device) {
+                return contacts_of_nested(method, device, prepared, speculative);
+            };
+            const std::vector<Contact> expected = contacts(Method::certified, "cpu");
+            EXPECT_GT(
+                std::ranges::count(expected, FeatureKind::inside, [](const Contact& c) { return c.feature.kind; }), 50);
+            for (const std::string& device : {tested_device(), "cpu," + tested_device(), std::string("cpu")})
+                EXPECT_TRUE(same(contacts(Method::standard, device), expected)) << device;
+            EXPECT_TRUE(same(contacts(Method::predictive, tested_device()), contacts(Method::predictive, "cpu")));
+        }
+}
+
 // Two devices, or parts of one: each with its own scene, at the same time, and both for one scene.
 void expect_side_by_side(const std::string& one, const std::string& other) {
     const Crowd& crowd = crowds().front();

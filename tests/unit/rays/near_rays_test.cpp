@@ -49,6 +49,11 @@ public:
         listed_.step_done();
         return pipeline_.asked();
     }
+    /// After find(): whether edges alone tell of the pair.
+    bool without_contact(std::uint32_t i) const {
+        return pipeline_.contacts().first(2 * i) == pipeline_.contacts().first(2 * i + 2)
+               && asks_edges(bodies[pairs[i].first], bodies[pairs[i].second]);
+    }
     /// By pair: how far its bodies can move, either against the other, before an edge crosses that is not found now.
     std::vector<double> clear(double ahead, RayBatch& batch, NearRays& rays) {
         const Part::Pairs asked = listed_.next(pairs);
@@ -126,7 +131,13 @@ Found crossings(const PlacedBody& source, const PlacedBody& target, Random& rand
 void expect_all_found(Pairs& all, std::size_t least, double most_others) {
     Random random(3);
     std::size_t expected = 0, near = 0;
-    for (const AskedPair& asked : all.find())
+    // Of a pair without contact that is not asked none was found.
+    const std::span<const AskedPair> found_now = all.find();
+    std::vector<AskedPair> pairs(found_now.begin(), found_now.end());
+    for (std::uint32_t i = 0; i < all.pairs.size(); ++i)
+        if (all.without_contact(i) && std::ranges::find(pairs, i, &AskedPair::pair) == pairs.end())
+            pairs.push_back({i, false, {}});
+    for (const AskedPair& asked : pairs)
         for (std::uint32_t side = 0; side < 2; ++side) {
             const auto [source, target] = directed_bodies(all.bodies, all.pairs, 2 * asked.pair + side);
             Found found;
