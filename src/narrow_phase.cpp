@@ -93,8 +93,8 @@ const PairList& NarrowPhase::list_asked(const SlotChanges& moved, OpenPairs& pai
     return asked_;
 }
 
-void NarrowPhase::step(std::span<const PlacedBody> bodies, const SlotChanges& moved, OpenPairs& pairs,
-                       StepStats& stats, double broad_ms) {
+void NarrowPhase::step(std::span<const PlacedBody> bodies, const SlotChanges& moved, OpenPairs& pairs, StepStats& stats,
+                       double broad_ms) {
     const auto start = Clock::now();
     std::vector<DeviceWork> work = std::move(stats.details.work); // to reuse its memory
     stats = {};

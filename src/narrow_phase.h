@@ -83,7 +83,7 @@ private:
     Assignment assignment_;
     Opener open_other_; ///< empty once it was asked
     std::optional<DeviceChoice> choice_;
-    std::size_t in_use_ = 0;                     ///< with a choice: the part that has all pairs
+    std::size_t in_use_ = 0;   ///< with a choice: the part that has all pairs
     std::vector<Found> found_; ///< by part; without contacts once it is dropped
     std::vector<Contact> merged_;
     SlotChanges::Seen seen_ = 0; ///< the last step: SlotChanges of bodies

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "slot_changes.h"
 #include "pairs/directed_pairs.h"
+#include "slot_changes.h"
 
 #include <span>
 #include <vector>

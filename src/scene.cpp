@@ -8,13 +8,13 @@
 #include "contacts/predictions.h"
 #include "executor/float_environment.h"
 #include "free_all.h"
-#include "slot_changes.h"
 #include "narrow_phase.h"
 #include "next_poses.h"
 #include "pose_fault.h"
 #include "read_poses.h"
 #include "shape/preparer.h"
 #include "shape/shape_data.h"
+#include "slot_changes.h"
 #include "world_boxes.h"
 
 #include <raycontact/error.h>

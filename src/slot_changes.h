@@ -105,9 +105,9 @@ private:
         step_ += by;
     }
 
-    std::vector<Slot> list_; ///< in the order of their marks
-    std::vector<char> marked_;   ///< by slot
-    Seen step_ = 2;              ///< a user that has seen none has 0
+    std::vector<Slot> list_;   ///< in the order of their marks
+    std::vector<char> marked_; ///< by slot
+    Seen step_ = 2;            ///< a user that has seen none has 0
 };
 
 } // namespace raycontact

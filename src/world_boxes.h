@@ -2,8 +2,8 @@
 #pragma once
 
 #include "broadphase/box_tree.h"
-#include "slot_changes.h"
 #include "pairs/directed_pairs.h"
+#include "slot_changes.h"
 
 #include <raycontact/settings.h>
 

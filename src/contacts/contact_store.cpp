@@ -80,8 +80,8 @@ std::span<const Contact> ContactStore::of(const SlotPair& pair) const {
 // Those of one pair may begin in the block before the first one that begins with them.
 ContactStore::Range ContactStore::range_of(const SlotPair& pair) const {
     const std::uint64_t number = pair_number(pair);
-    const auto block = static_cast<std::size_t>(
-        std::ranges::lower_bound(blocks_, number, {}, &Block::first) - blocks_.begin());
+    const auto block =
+        static_cast<std::size_t>(std::ranges::lower_bound(blocks_, number, {}, &Block::first) - blocks_.begin());
     const std::span<const Contact> contacts = all();
     const std::size_t from = block == 0 ? 0 : (block - 1) * block_size;
     const auto here = contacts.subspan(from, std::min(contacts.size(), block * block_size) - from);
@@ -239,9 +239,9 @@ void ContactStore::move_units(Executor& executor, const std::vector<Contact>& fo
         std::size_t from = slice * contacts_at_once;
         const std::size_t end = std::min(olds.size(), from + contacts_at_once);
         auto unit = std::ranges::lower_bound(units_, from, {}, [](const Unit& one) { return one.old.begin; });
-        const auto last = slice + 1 == count
-                              ? units_.end()
-                              : std::ranges::lower_bound(units_, end, {}, [](const Unit& one) { return one.old.begin; });
+        const auto last = slice + 1 == count ? units_.end()
+                                             : std::ranges::lower_bound(units_, end, {},
+                                                                        [](const Unit& one) { return one.old.begin; });
         Contact* to = next_->data() + from;
         if (unit != units_.begin()) {
             const Unit& before = unit[-1];
@@ -264,7 +264,8 @@ void ContactStore::move_units(Executor& executor, const std::vector<Contact>& fo
         // While they are in the cache; those that slices share come after all.
         const Range own{static_cast<std::size_t>(first - next_->data()), static_cast<std::size_t>(to - next_->data())};
         copied_[slice] = own;
-        for (std::size_t block = (own.begin + block_size - 1) / block_size; (block + 1) * block_size <= own.end; ++block)
+        for (std::size_t block = (own.begin + block_size - 1) / block_size; (block + 1) * block_size <= own.end;
+             ++block)
             fill(block, *next_);
     });
     contacts_.swap(next_);
@@ -280,12 +281,12 @@ void ContactStore::forget_new(Executor& executor) {
         for (std::size_t i = begin; i < end; ++i) (*contacts_)[i].is_new = false;
     };
     if (maybe_new_.size() == 1)
-        executor.run(static_cast<std::uint32_t>(maybe_new_[0].size()), 4096, [&](std::uint32_t begin, std::uint32_t end) {
-            forget(maybe_new_[0].begin + begin, maybe_new_[0].begin + end);
-        });
+        executor.run(static_cast<std::uint32_t>(maybe_new_[0].size()), 4096,
+                     [&](std::uint32_t begin, std::uint32_t end) {
+                         forget(maybe_new_[0].begin + begin, maybe_new_[0].begin + end);
+                     });
     else
-        executor.each(maybe_new_.size(), 64,
-                      [&](std::uint32_t i) { forget(maybe_new_[i].begin, maybe_new_[i].end); });
+        executor.each(maybe_new_.size(), 64, [&](std::uint32_t i) { forget(maybe_new_[i].begin, maybe_new_[i].end); });
 }
 
 void ContactStore::rest(Executor& executor) {

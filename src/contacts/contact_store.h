@@ -89,7 +89,7 @@ private:
     std::vector<SlotPair> pairs_;  ///< asked about or closed
     std::vector<Slice> slices_;
     std::vector<Unit> units_;
-    bool moves_ = false; ///< units_ have not the places of the old ones
+    bool moves_ = false;        ///< units_ have not the places of the old ones
     std::vector<Range> copied_; ///< by slices of move_units()
     std::vector<std::size_t> changed_blocks_;
     std::vector<LostContact> lost_;

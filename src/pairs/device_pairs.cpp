@@ -57,8 +57,8 @@ void DevicePairs::place(const Update& update, Placing& at) {
     launch<KernelId::apply_changes>(update.device, at.moved.size() + changed_.size(),
                                     static_cast<kernels::uint>(at.moved.size()), at.device_moved, device_changed_,
                                     at.device_bodies, device_pairs_);
-    launch<KernelId::place_pairs>(update.device, pairs.size(), device_pairs_, at.device_bodies,
-                                  update.arrays().headers, at.placed);
+    launch<KernelId::place_pairs>(update.device, pairs.size(), device_pairs_, at.device_bodies, update.arrays().headers,
+                                  at.placed);
 }
 
 void DevicePairs::place_on_host(const Update& update, Placing& at) {
@@ -66,8 +66,8 @@ void DevicePairs::place_on_host(const Update& update, Placing& at) {
     const auto count = static_cast<kernels::uint>(pairs.size());
     at.host_placed.resize(2 * pairs.size());
     update.executor.run(count, 256, [&](kernels::uint begin, kernels::uint end) {
-        kernels::prototype::place_pairs({begin, end}, count, pairs.data(),
-                                        at.sent.data(), update.shapes.headers().data(), at.host_placed.data());
+        kernels::prototype::place_pairs({begin, end}, count, pairs.data(), at.sent.data(),
+                                        update.shapes.headers().data(), at.host_placed.data());
     });
     at.placed.write(update.device, at.host_placed);
 }

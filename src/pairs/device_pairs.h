@@ -14,9 +14,7 @@ public:
     void clear() { *this = {}; }
     /// Of the last place().
     std::size_t count() const { return open_; }
-    std::uint64_t bytes() const {
-        return open_ * (sizeof(kernels::PairBodies) + 2 * sizeof(kernels::DirectedPair));
-    }
+    std::uint64_t bytes() const { return open_ * (sizeof(kernels::PairBodies) + 2 * sizeof(kernels::DirectedPair)); }
 
     /// At 2 x slot of a pair, + 1 for vertices of the second body against the first; some slots have no pair.
     const Array<kernels::DirectedPair>& placed() const { return now_.placed; }

@@ -15,8 +15,8 @@ namespace raycontact {
 class FoundPairs {
 public:
     void clear() { slice_count_ = 0; }
-    /// Those of `found`: directed_of() of one is 2 x slot, + 1 for vertices of the second body. What is of one slot lies
-    /// in a row.
+    /// Those of `found`: directed_of() of one is 2 x slot, + 1 for vertices of the second body. What is of one slot
+    /// lies in a row.
     template <class T, class DirectedOf>
     void add(Executor& executor, const PairSlots& open, std::span<const T> found, DirectedOf&& directed_of) {
         const RowSlices slices{found.size()};

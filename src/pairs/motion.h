@@ -2,9 +2,9 @@
 #pragma once
 
 #include "executor/executor.h"
-#include "slot_changes.h"
 #include "pairs/directed_pairs.h"
 #include "platform/prefetch.h"
+#include "slot_changes.h"
 
 #include <span>
 #include <vector>

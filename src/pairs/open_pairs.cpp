@@ -63,7 +63,8 @@ const PairList& OpenPairs::all(Executor& executor) {
 
 void OpenPairs::list_of(Executor& executor, const SlotChanges& bodies, PairList& list) {
     const auto is_in = [&](BodySlot body) { return bodies.is_marked(body); };
-    find(executor, bodies.list().size(), [&](std::size_t i) { return bodies.list()[i]; }, is_in);
+    find(
+        executor, bodies.list().size(), [&](std::size_t i) { return bodies.list()[i]; }, is_in);
     for (const std::uint32_t slot : slots_.changes().list()) {
         if (!slots_.is_open(slot)) continue;
         const SlotPair pair = slots_[slot];

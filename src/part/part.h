@@ -42,8 +42,8 @@ public:
         std::span<const SlotPair> asked;
         std::span<const std::uint32_t> slots;
     };
-    /// Starts a step. bodies: of the scene, by slot. All stays valid until the next begin(). A part that goes on without
-    /// pairs asks nothing of its device.
+    /// Starts a step. bodies: of the scene, by slot. All stays valid until the next begin(). A part that goes on
+    /// without pairs asks nothing of its device.
     void begin(std::span<const PlacedBody> bodies, const SlotChanges& moved, const Pairs& pairs,
                const Settings& settings);
     /// The contacts of the pairs that were asked about, or if it answers for all, of all; sorted.

@@ -22,9 +22,9 @@ class Pipeline {
 public:
     /// Starts a step.
     void begin(const Update& update);
-    /// Ends the step that begin() started with the same update. Returns it with the pairs that the answers are of: those
-    /// asked, or of a device that answers for all, those of which it found something. What follows is valid until the
-    /// next begin().
+    /// Ends the step that begin() started with the same update. Returns it with the pairs that the answers are of:
+    /// those asked, or of a device that answers for all, those of which it found something. What follows is valid until
+    /// the next begin().
     Update end(const Update& update);
     /// The contacts of vertices; LocalContact::pair is the directed index in the pairs of end().
     const ByPair<kernels::LocalContact>& contacts() const { return local_; }

@@ -193,8 +193,7 @@ void CertifiedRays::settle(const Update& update, std::uint32_t first_ray) {
             const std::size_t end = segment + segments_of(own.count);
             kernels::HeldRange& held_range = held_ranges[i++];
             const bool held = own.rays.held + 1 == step_; // the pair was asked about in the last step, too
-            held_range = {own.rays.first, held ? own.rays.count : 0, ray, due.margin, due.radius,
-                          due.tests_cones};
+            held_range = {own.rays.first, held ? own.rays.count : 0, ray, due.margin, due.radius, due.tests_cones};
             // For an idle pair nothing was known and nothing is sought, so nothing is known afterwards.
             own.rays = {ray, 0, holds && !is_idle(held_range) ? step_ : 0};
             own.valid_until = own.expiry;

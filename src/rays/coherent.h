@@ -80,7 +80,7 @@ private:
         double slack = -1; ///< metres that the pair may move, by a cheap bound, before the exact one is asked
         Kept kept[2];
     };
-    struct Moving { ///< a pair between two devices; its cached rays follow
+    struct Moving {         ///< a pair between two devices; its cached rays follow
         std::uint32_t pair; ///< its place among those that move
         PairState state;
         Hot hot;

@@ -44,7 +44,7 @@ private:
     void find_some(const Update& update, std::span<const Search> due, CertifiedPairs& table, RayBatch& batch);
 
     Array<kernels::DirectedPair> pairs_; ///< both directions of some of those due
-    Array<kernels::DirectedPair> next_;   ///< where they will be, if any moves
+    Array<kernels::DirectedPair> next_;  ///< where they will be, if any moves
     Array<float> margins_, ahead_, least_;
     NearRays rays_;
     KeptNear CertifiedPair::*kept_;

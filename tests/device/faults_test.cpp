@@ -356,8 +356,7 @@ Uneven run_uneven(Method method, int faulty, std::size_t device, std::size_t at,
             gone = whole.had[static_cast<std::size_t>(had_in)][device];
         }
         if (rig.stats.devices_lost == 0)
-            result.had.push_back(
-                {rig.narrow.assignment().all_on(0).pairs, rig.narrow.assignment().all_on(1).pairs});
+            result.had.push_back({rig.narrow.assignment().all_on(0).pairs, rig.narrow.assignment().all_on(1).pairs});
         result.moved += rig.stats.details.pairs_moved;
         result.lost += rig.stats.devices_lost;
         result.contacts += found.size();

@@ -109,7 +109,8 @@ public:
     int find(std::vector<std::uint32_t>& found) {
         store_.accelerate();
         for (PlacedBody& body : bodies) body.shape_index = store_.index_of(body.shape);
-        const Update update{*opened_.device, *opened_.executor, store_, bodies, moved_, pairs, motion_, settings_};
+        const Update update{*opened_.device, *opened_.executor, store_, bodies, moved_, open_, {}, {},
+                            motion_,         settings_};
         batch_.resize(update.device, 0);
         std::vector<kernels::DirectedPair> placed;
         std::vector<std::uint32_t> directed;
@@ -130,7 +131,7 @@ public:
             const Piece pieces[] = {batch_.totals.piece(batch_.sums), search.piece()};
             update.device.queue().read(pieces);
         } while (!search.take(update.device, batch_.sums[RayBatch::inside_sum]));
-        search.mark(directed, pairs.size());
+        search.mark([&](kernels::uint p) { return directed[p]; }, pairs.size());
         found.clear();
         for (const kernels::uint p : search.found()) found.push_back(directed[p]);
         return searches;
@@ -145,7 +146,8 @@ private:
     OpenDevice opened_;
     ShapeStore store_;
     Settings settings_;
-    MovedBodies moved_;
+    SlotChanges moved_;
+    PairSlots open_;
     Motion motion_;
     RayBatch batch_;
 };

@@ -32,7 +32,8 @@ TEST(ByPair, IsInTheOrderOfThePairsWhateverTheirSlots) {
                 expected.emplace_back(directed[i], vertex++);
             }
         all.set(
-            executor, std::span<const kernels::LocalContact>(found), [&](std::uint32_t i) { return directed[i]; }, pairs);
+            executor, std::span<const kernels::LocalContact>(found), [&](std::uint32_t i) { return directed[i]; },
+            pairs);
         std::sort(expected.begin(), expected.end()); // those of a pair keep their order
         ASSERT_EQ(all.all().size(), expected.size());
         std::vector<std::size_t> counts(2 * std::size_t{pairs});

@@ -40,25 +40,33 @@ public:
         place(b, pose_b);
         pairs.emplace_back(bodies.size() - 2, bodies.size() - 1);
     }
-    std::span<const AskedPair> find() {
-        const Part::Pairs asked = listed_.next(pairs);
-        const Update update{*opened_.device, *opened_.executor, *store_, bodies, moved_, asked.open, asked.asked,
-                            asked.slots, motion_, settings_};
+    /// By their places in `pairs`.
+    std::vector<AskedPair> find() {
+        const Part::Pairs listed = listed_.next(pairs);
+        const Update update{*opened_.device, *opened_.executor, *store_,      bodies,  moved_,
+                            listed.open,     listed.asked,      listed.slots, motion_, settings_};
         pipeline_.begin(update);
-        pipeline_.end(update);
+        const Update found = pipeline_.end(update);
+        found_.assign(found.pairs.begin(), found.pairs.end());
         listed_.step_done();
-        return pipeline_.asked();
+        std::vector<AskedPair> asked(pipeline_.asked().begin(), pipeline_.asked().end());
+        for (AskedPair& one : asked)
+            one.pair = static_cast<std::uint32_t>(std::ranges::find(pairs, found_[one.pair]) - pairs.begin());
+        return asked;
     }
     /// After find(): whether edges alone tell of the pair.
     bool without_contact(std::uint32_t i) const {
-        return pipeline_.contacts().first(2 * i) == pipeline_.contacts().first(2 * i + 2)
-               && asks_edges(bodies[pairs[i].first], bodies[pairs[i].second]);
+        const auto [a, b] = pairs[i];
+        const auto at = static_cast<std::size_t>(std::ranges::find(found_, pairs[i]) - found_.begin());
+        const bool in_contact =
+            at < found_.size() && pipeline_.contacts().first(2 * at) != pipeline_.contacts().first(2 * at + 2);
+        return !in_contact && asks_edges(bodies[a], bodies[b]);
     }
     /// By pair: how far its bodies can move, either against the other, before an edge crosses that is not found now.
     std::vector<double> clear(double ahead, RayBatch& batch, NearRays& rays) {
         const Part::Pairs asked = listed_.next(pairs);
-        const Update update{*opened_.device, *opened_.executor, *store_, bodies, moved_, asked.open, asked.asked,
-                            asked.slots, motion_, settings_};
+        const Update update{*opened_.device, *opened_.executor, *store_,     bodies,  moved_,
+                            asked.open,      asked.asked,       asked.slots, motion_, settings_};
         batch.resize(update.device, 0);
         Array<kernels::DirectedPair> placed;
         Array<float> beyond;
@@ -95,6 +103,7 @@ private:
     Settings settings_;
     SlotChanges moved_;
     device_test::ListedPairs listed_;
+    std::vector<SlotPair> found_; ///< the pairs of the answers
     Motion motion_;
     Pipeline pipeline_;
 };
@@ -132,8 +141,7 @@ void expect_all_found(Pairs& all, std::size_t least, double most_others) {
     Random random(3);
     std::size_t expected = 0, near = 0;
     // Of a pair without contact that is not asked none was found.
-    const std::span<const AskedPair> found_now = all.find();
-    std::vector<AskedPair> pairs(found_now.begin(), found_now.end());
+    std::vector<AskedPair> pairs = all.find();
     for (std::uint32_t i = 0; i < all.pairs.size(); ++i)
         if (all.without_contact(i) && std::ranges::find(pairs, i, &AskedPair::pair) == pairs.end())
             pairs.push_back({i, false, {}});
