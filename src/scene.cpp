@@ -26,6 +26,7 @@
 #include <limits>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <unordered_map>
 
 namespace raycontact {
@@ -87,6 +88,7 @@ struct Scene::State {
     void mark_box(BodySlot slot) noexcept {
         world.mark(slot);
         box_changes.mark(slot);
+        unlisted.mark(slot);
     }
     void forget_moves() noexcept {
         moved.forget();
@@ -95,6 +97,7 @@ struct Scene::State {
     void forget_boxes() noexcept {
         world.forget();
         box_changes.forget();
+        unlisted.forget();
     }
 
     void pack_shapes() {
@@ -149,21 +152,31 @@ struct Scene::State {
         }
     }
 
+    /// A device walks with all bodies, the host with those that moved: where they are few, the host goes on with the
+    /// pairs, whoever found them.
     void find_pairs() {
+        constexpr std::size_t few_of = 16;
         given_stand = false;
-        if (!find_pairs_on_device()) find_pairs_on_host();
+        const float reach = world.reach(bodies);
+        const bool stood = unlisted.is_next(listed) && reach == listed_reach;
+        listed = 0; // until they are found again
+        const std::size_t count = unlisted.list().size();
+        const bool few = stood && count < bodies.size() / few_of;
+        if ((!stood || count > 0) && (few || !find_pairs_on_device())) find_pairs_on_host(stood);
+        listed = unlisted.step_done();
+        listed_reach = reach;
     }
 
-    void find_pairs_on_host() {
+    void find_pairs_on_host(bool stood) {
         Executor& executor = narrow.parts().executor();
+        listing_part.reset();
         world.update(executor, bodies, next, narrow.settings());
         const BroadPhaseInput input{world.boxes(), filters};
-        if (std::exchange(found_by, Finder::none) != Finder::host || world.is_resized())
-            pairs.set_all(executor, broad_phase.find(executor, world.tree(), input));
-        else
-            broad_phase.update(executor, world.tree(), input, world.changed(), pairs);
-        world.accept();
-        found_by = Finder::host;
+        if (!stood) return pairs.set_all(executor, broad_phase.find(executor, world.tree(), input));
+        others.clear();
+        for (const BodySlot slot : unlisted.list())
+            if (slot < world.boxes().size()) others.push_back(slot);
+        broad_phase.update(executor, world.tree(), input, others, pairs);
     }
 
     /// False: the part that would is not one that can. Where one fails, the next goes on.
@@ -174,12 +187,15 @@ struct Scene::State {
             if (!parts[first].can_find_pairs()) return false;
             const DeviceBroadPhase::Changes changes = box_changes.list(parts.executor(), bodies, next, filters, world,
                                                                        narrow.settings(), parts[first].known_slots());
-            const bool stood = std::exchange(found_by, Finder::none) == Finder::device;
-            const auto find = [&] { parts[first].find_pairs(changes, found_pairs); };
-            if (!(stood && changes.moved.empty()) && !parts.before_step(first, find)) continue;
+            const bool whole = std::exchange(listing_part, std::nullopt) != first;
+            DeviceBroadPhase::Found found;
+            if (!parts.before_step(first, [&] { found = parts[first].find_pairs(changes, whole); })) continue;
             if (!parts[first].can_find_pairs()) return false;
-            pairs.set_all(parts.executor(), found_pairs);
-            found_by = Finder::device;
+            if (found.whole)
+                pairs.set_all(parts.executor(), found.opened);
+            else
+                pairs.apply(found.opened, found.closed);
+            listing_part = first;
             return true;
         }
     }
@@ -235,7 +251,8 @@ struct Scene::State {
     }
 
     void set_pairs() {
-        found_by = Finder::none;
+        listed = 0;
+        listing_part.reset();
         given_stand = false;
         pairs.set_all(narrow.parts().executor(), given_pairs);
         given_stand = true;
@@ -266,7 +283,7 @@ struct Scene::State {
     void drop_pairs() noexcept {
         forget_moves();
         pairs.clear();
-        found_by = Finder::none;
+        listing_part.reset();
         given_stand = names_stand = false;
     }
 
@@ -315,7 +332,7 @@ struct Scene::State {
         box_changes.trim();
         pairs.trim();
         last_given.shrink_to_fit();
-        free_all(found_pairs, given_pairs, sorted, sorter, columns);
+        free_all(others, given_pairs, sorted, sorter, columns);
     }
 
     // Frees memory once less than a quarter of it is in use.
@@ -331,6 +348,7 @@ struct Scene::State {
         moved.cut(slots.end());
         world.cut(slots.end());
         box_changes.cut(slots.end());
+        unlisted.cut(slots.end());
     }
 
     NarrowPhase narrow;
@@ -348,19 +366,22 @@ struct Scene::State {
     BoxChanges box_changes;
     BroadPhase broad_phase;
     OpenPairs pairs;
-    std::vector<Pair> named; ///< by id, if names_stand
+    SlotChanges unlisted;         ///< bodies whose box or filter may be another than when the pairs were found
+    SlotChanges::Seen listed = 0; ///< when that was; 0: the pairs are others
+    float listed_reach = 0;       ///< WorldBoxes::reach() then
+    std::optional<std::size_t> listing_part; ///< the part whose device found the pairs
+    std::vector<BodySlot> others;            ///< of find_pairs_on_host()
+    std::vector<Pair> named;                 ///< by id, if names_stand
     bool names_stand = false;
     std::vector<Pair> last_given; ///< of read_pairs()
     bool given_stand = false;     ///< those are open, and no body of theirs has been removed
-    std::vector<SlotPair> found_pairs, given_pairs, sorted;
+    std::vector<SlotPair> given_pairs, sorted;
     PairSorter<SlotPair> sorter;
     ContactColumnWriter columns;
     StepStats stats;
     static constexpr std::uint64_t wanted = std::numeric_limits<std::uint64_t>::max();
     std::unordered_map<const Shape*, std::uint64_t> met_shapes; ///< those not prepared: the step that first met them
     std::uint64_t steps_met = 0;
-    /// Who found them, by the filters as they are: the host those of `world`, a device those of `box_changes`.
-    enum class Finder : std::uint8_t { none, host, device } found_by = Finder::none;
     Preparer preparer; ///< last: it ends first
 };
 
@@ -386,6 +407,7 @@ BodyId Scene::add(std::shared_ptr<const Shape> shape, const Pose& pose) {
     s.moved.make_room(slot + std::size_t{1});
     s.world.make_room(slot + std::size_t{1});
     s.box_changes.make_room(slot + std::size_t{1});
+    s.unlisted.make_room(slot + std::size_t{1});
     s.pack_shapes(); // without a step in between they would pile up
     s.narrow.parts().add_shape(shape);
     s.user_data[slot] = 0;
@@ -405,6 +427,7 @@ void Scene::remove(BodyId body) {
     gone.shape = nullptr;
     s.mark(body.slot);
     s.pairs.close_all_of(body.slot);
+    s.listing_part.reset(); // its list has these pairs still
     s.given_stand = s.names_stand = false;
     s.slots.take_back(body.slot);
     s.cut_to_slots();
@@ -492,8 +515,8 @@ void Scene::set_filter(BodyId body, std::uint32_t groups, std::uint32_t mask) {
     state_->existing(body, "Scene::set_filter");
     const BroadPhaseInput::Filter filter{groups, mask};
     if (std::exchange(state_->filters[body.slot], filter) == filter) return;
-    state_->found_by = State::Finder::none;
     state_->box_changes.mark(body.slot);
+    state_->unlisted.mark(body.slot);
 }
 
 bool Scene::has(BodyId body) const noexcept {

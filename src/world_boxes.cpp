@@ -5,7 +5,6 @@
 #include "shape/shape_data.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace raycontact {
 
@@ -63,10 +62,7 @@ void WorldBoxes::update(Executor& executor, std::span<const PlacedBody> bodies, 
 }
 
 void WorldBoxes::resize(std::size_t slots) {
-    changed_.clear();
-    is_resized_ = true;
     is_other_.resize(slots);
-    is_changed_.assign(slots, 0);
     boxes_.resize(slots, no_box); // last: where memory lacks, it tells that the others may be too short
 }
 
@@ -92,15 +88,7 @@ void WorldBoxes::remake(Executor& executor, std::span<const PlacedBody> bodies, 
             if (slot < boxes_.size()) list(slot);
     }
     tree_.update(executor, boxes_, others_);
-    for (const BodySlot slot : others_)
-        if (std::exchange(is_changed_[slot], 1) == 0) changed_.push_back(slot);
     moved_.step_done();
-}
-
-void WorldBoxes::accept() {
-    for (const BodySlot slot : changed_) is_changed_[slot] = 0;
-    changed_.clear();
-    is_resized_ = false;
 }
 
 } // namespace raycontact

@@ -41,11 +41,6 @@ public:
     std::span<const Box> boxes() const { return boxes_; }
     const BoxTree& tree() const { return tree_; }
     BoxTree& tree() { return tree_; }
-    /// Whether there are more or fewer than at the last accept().
-    bool is_resized() const { return is_resized_; }
-    /// Else, those that are others than then, each once.
-    std::span<const BodySlot> changed() const { return changed_; }
-    void accept();
     /// How far a vertex as its file has it can be from the box of its shape, metres.
     double rounding() const { return rounding_; }
     void trim() { boxes_.shrink_to_fit(); }
@@ -61,11 +56,11 @@ private:
     SlotChanges::Seen seen_ = 0;
     float reach_ = 0; ///< how far beyond the box of an open mesh a vertex can lie and still reach it, metres
     double rounding_ = 0;
-    bool reach_known_ = true, is_resized_ = true;
+    bool reach_known_ = true;
     std::vector<Box> boxes_;
     BoxTree tree_;
-    std::vector<char> is_other_, is_changed_; ///< by slot
-    std::vector<BodySlot> others_, changed_;  ///< others_: than before the last update()
+    std::vector<char> is_other_;   ///< by slot
+    std::vector<BodySlot> others_; ///< than before the last update()
 };
 
 } // namespace raycontact

@@ -4,6 +4,7 @@
 #include "device/launch.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 namespace raycontact {
@@ -22,6 +23,9 @@ constexpr double slower = 1.3;
 constexpr unsigned steps_wide = 32;
 constexpr std::size_t most_wide = 1 << 24; // items of their table, 16 bytes each
 constexpr uint columns = 3;                // of count_partners
+constexpr std::size_t least_room = 1024;   // for pairs
+// Changes that are read with their number: from one step to the next they differ, and so many cost nothing.
+constexpr std::size_t least_read = 1024;
 
 uint number(std::size_t size) {
     return Count(size).value;
@@ -31,38 +35,38 @@ std::size_t blocks_of(std::size_t items, std::size_t block) {
     return (items + block - 1) / block;
 }
 
-bool before(const kernels::PairBodies& p, const kernels::PairBodies& q) {
-    return SlotPair(p.first, p.second) < SlotPair(q.first, q.second);
-}
-
-SlotPair slot_pair(const kernels::PairBodies& pair) {
-    return {pair.first, pair.second};
-}
-
 } // namespace
 
-bool DeviceBroadPhase::find(Device& device, const Changes& changes, std::vector<SlotPair>& pairs) {
+DeviceBroadPhase::Found DeviceBroadPhase::find(Device& device, const Changes& changes, bool whole) {
     if (changes.slots == 0) {
         *this = {};
-        return !std::exchange(pairs, {}).empty();
+        return {true, {}, {}};
     }
     try {
         tell(device, changes);
         const bool sorts = std::exchange(sorts_next_, false);
         if (sorts) sort(device);
         fill(device);
-        do search(device);
-        while (!read(device) && !gave_up_);
+        if (whole) has_last_ = false;
+        do {
+            search(device);
+            // Rows are the same where slots and wide bodies are.
+            compares_ = has_last_ && last_wide_ == wide_slots_;
+            if (compares_) compare(device);
+        } while (!read(device) && !gave_up_);
         if (gave_up_) {
             *this = {};
             gave_up_ = true;
-            return false;
+            return {};
         }
         if (sorts) tests_when_sorted_ = tests_;
         // Bodies that are wide are tested by no tree: only a new order tells whether they still are.
         wide_steps_ = wide_slots_.empty() ? 0 : wide_steps_ + 1;
         sorts_next_ = tests_ > slower * tests_when_sorted_ || wide_steps_ >= steps_wide;
-        return take(pairs);
+        std::swap(list_, last_);
+        last_wide_ = wide_slots_;
+        has_last_ = true;
+        return {!compares_, opened_, closed_};
     } catch (...) {
         *this = {};
         throw;
@@ -76,11 +80,12 @@ void DeviceBroadPhase::tell(Device& device, const Changes& changes) {
         while (levels_ < PAIR_LEVELS && nodes_of(slots, levels_ - 1) > 1) ++levels_;
         tree_.resize(device, nodes_below(slots, levels_));
         resize(device, slots, extents_, boxes_, keys_);
-        totals_.resize(device, 1);
+        totals_.resize(device, 2);
         host_order_.resize(slots);
         for (uint i = 0; i < slots; ++i) host_order_[i] = {0, i};
         order_.write(device, host_order_);
         sorts_next_ = true;
+        has_last_ = false;
     }
     changed_.write(device, changes.extents);
     moved_.write(device, changes.moved);
@@ -120,28 +125,60 @@ void DeviceBroadPhase::sort(Device& device) {
 }
 
 void DeviceBroadPhase::search(Device& device) {
-    const std::size_t slots = boxes_.size(), items = slots + wide_slots_.size() * blocks_of(slots, BLOCK_BODIES);
-    const Array<kernels::PairBodies>& pairs = found_.room(device);
-    counts_.resize(device, columns, items);
-    launch<KernelId::count_partners>(device, items, number(slots), levels_, number(std::max(few, slots / few_of)),
-                                     tree_, order_, boxes_, wide_, is_wide_, counts_.values());
-    counts_.scan(device, items, totals_, 0, pairs.size());
-    launch<KernelId::write_partners>(device, items_of(totals_, 0, items), number(slots), levels_, tree_, order_, boxes_,
-                                     wide_, counts_.values(), counts_.firsts(), pairs);
+    const std::size_t slots = boxes_.size(), rows = slots + wide_slots_.size() * blocks_of(slots, BLOCK_BODIES);
+    const uint wides = number(wide_slots_.size());
+    Columns& counts = list_.counts;
+    Array<kernels::PairBodies>& pairs = list_.pairs;
+    pairs.grow(device, std::max(least_room, last_.count));
+    counts.resize(device, columns, rows);
+    launch<KernelId::count_partners>(device, rows, number(slots), levels_, number(std::max(few, slots / few_of)), tree_,
+                                     order_, boxes_, wides, wide_, is_wide_, counts.values());
+    counts.scan(device, rows, totals_, 0, pairs.size());
+    launch<KernelId::write_partners>(device, items_of(totals_, 0, rows), number(slots), levels_, tree_, order_, boxes_,
+                                     wides, wide_, counts.values(), counts.firsts(), pairs);
+}
+
+void DeviceBroadPhase::compare(Device& device) {
+    const std::size_t rows = list_.counts.stride();
+    changes_.resize(device, 1, rows);
+    launch<KernelId::count_changed_pairs>(device, rows, totals_, number(list_.pairs.size()), list_.counts.values(),
+                                          list_.counts.firsts(), list_.pairs, last_.counts.values(),
+                                          last_.counts.firsts(), last_.pairs, changes_.values());
+    write_changes(device);
+}
+
+void DeviceBroadPhase::write_changes(Device& device) {
+    const std::size_t rows = list_.counts.stride();
+    const Array<kernels::PairDifference>& changed = changed_pairs_.room(device);
+    changes_.scan(device, rows, totals_, 1, changed.size());
+    launch<KernelId::write_changed_pairs>(
+        device, items_of(totals_, 1, rows), list_.counts.values(), list_.counts.firsts(), list_.pairs,
+        last_.counts.values(), last_.counts.firsts(), last_.pairs, changes_.values(), changes_.firsts(), changed);
 }
 
 // False if it must be done again: a body turned out to be wide, or the pairs had too little room.
 bool DeviceBroadPhase::read(Device& device) {
-    kernels::Totals totals{};
-    const Piece pieces[] = {totals_.piece({&totals, 1}), found_.piece()};
-    device.queue().read(pieces);
-    tests_ = std::exchange(totals.sums[2], 0); // no result: it may exceed 32 bits
-    check_sums({&totals, 1});
-    if (totals.sums[1] > 0) {
+    std::array<kernels::Totals, 2> totals{};
+    const std::size_t scans = compares_ ? 2 : 1;
+    const auto made = std::span(totals).first(scans);
+    const Piece pieces[] = {totals_.piece(made), changed_pairs_.piece(least_read)};
+    device.queue().read(std::span(pieces).first(scans));
+    tests_ = std::exchange(totals[0].sums[2], 0); // no result: it may exceed 32 bits
+    check_sums(made);
+    if (totals[0].sums[1] > 0) {
         list_wide(device);
         return false;
     }
-    return found_.take(device, totals.sums[0]);
+    list_.count = totals[0].sums[0];
+    if (list_.count > list_.pairs.size()) {
+        list_.pairs.grow(device, list_.count);
+        return false;
+    }
+    if (compares_)
+        take_changes(device, totals[1].sums[0]);
+    else
+        take_all(device);
+    return true;
 }
 
 void DeviceBroadPhase::list_wide(Device& device) {
@@ -153,27 +190,25 @@ void DeviceBroadPhase::list_wide(Device& device) {
     gave_up_ = wide_slots_.size() * blocks_of(host_wide_.size(), BLOCK_BODIES) > most_wide;
 }
 
-// Those of wide bodies lie behind the others; both are sorted.
-bool DeviceBroadPhase::take(std::vector<SlotPair>& pairs) {
-    const std::span<const kernels::PairBodies> found = found_.values();
-    const auto same = [](const kernels::PairBodies& own, const SlotPair& pair) { return slot_pair(own) == pair; };
-    if (wide_slots_.empty()) {
-        if (std::ranges::equal(found, pairs, same)) return false;
-        pairs.resize(found.size());
-        std::ranges::transform(found, pairs.begin(), slot_pair);
-        return true;
+void DeviceBroadPhase::take_all(Device& device) {
+    std::vector<kernels::PairBodies> all(list_.count);
+    if (!all.empty()) list_.pairs.read(device, all);
+    opened_.resize(all.size());
+    std::ranges::transform(all, opened_.begin(), [](const auto& pair) { return SlotPair(pair.first, pair.second); });
+    closed_.clear();
+}
+
+void DeviceBroadPhase::take_changes(Device& device, std::size_t count) {
+    if (!changed_pairs_.take(device, count)) { // there is room now
+        write_changes(device);
+        const Piece piece = changed_pairs_.piece(least_read);
+        device.queue().read({&piece, 1});
+        changed_pairs_.take(device, count);
     }
-    const auto middle = std::is_sorted_until(found.begin(), found.end(), before);
-    next_.clear();
-    auto wide = middle;
-    for (auto own = found.begin(); own != middle; ++own) {
-        for (; wide != found.end() && before(*wide, *own); ++wide) next_.push_back(slot_pair(*wide));
-        next_.push_back(slot_pair(*own));
-    }
-    for (; wide != found.end(); ++wide) next_.push_back(slot_pair(*wide));
-    if (next_ == pairs) return false;
-    pairs.swap(next_);
-    return true;
+    opened_.clear();
+    closed_.clear();
+    for (const kernels::PairDifference& one : changed_pairs_.values())
+        (one.opened != 0 ? opened_ : closed_).emplace_back(one.first, one.second);
 }
 
 } // namespace raycontact

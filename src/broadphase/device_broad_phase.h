@@ -12,8 +12,8 @@
 namespace raycontact {
 
 /// Finds on a device the pairs that BroadPhase finds on the host, in the same order. It keeps the boxes of bodies and
-/// is told of changes alone. Each body walks down the tree: unlike a node of bodies, it needs no shared memory, and
-/// there are as many walks as a GPU wants.
+/// their pairs, and is told of changes, and tells of them, alone. Each body walks down the tree: unlike a node of
+/// bodies, it needs no shared memory, and there are as many walks as a GPU wants.
 class DeviceBroadPhase {
 public:
     /// What the device does not know yet.
@@ -27,9 +27,13 @@ public:
 
     /// Those that the device knows: none before the first find(), and after one that failed.
     std::size_t slots() const { return boxes_.size(); }
-    /// The device has double. pairs: become all of those whose boxes touch, and which no filter keeps apart, sorted.
-    /// Returns whether they were others before.
-    bool find(Device& device, const Changes& changes, std::vector<SlotPair>& pairs);
+    /// What became since the last find() of the pairs whose boxes touch, and which no filter keeps apart.
+    struct Found {
+        bool whole = false;                       ///< `opened` is all pairs: nothing is known of the last ones
+        std::span<const SlotPair> opened, closed; ///< each sorted; valid until the next call
+    };
+    /// The device has double. whole: the caller has not the pairs of the last find().
+    Found find(Device& device, const Changes& changes, bool whole);
     /// So many bodies are near so many others, which filters may keep apart, that a host finds the pairs with less
     /// memory. The last find() changed nothing then.
     bool gave_up() const { return gave_up_; }
@@ -39,9 +43,12 @@ private:
     void fill(Device& device);
     void sort(Device& device);
     void search(Device& device);
+    void compare(Device& device);
+    void write_changes(Device& device);
     bool read(Device& device);
     void list_wide(Device& device);
-    bool take(std::vector<SlotPair>& pairs);
+    void take_all(Device& device);
+    void take_changes(Device& device, std::size_t count);
 
     Array<kernels::BodyExtent> extents_, changed_; ///< by slot; those to set
     Array<kernels::BodyPlace> moved_;
@@ -49,13 +56,21 @@ private:
     kernels::uint levels_ = 0;       ///< of the tree
     Array<kernels::BoxNode> tree_;
     Array<kernels::SortKey> order_, keys_; ///< order_: slots along the curve
-    Columns digits_, counts_;
+    Columns digits_;
     Array<kernels::uint> is_wide_, wide_; ///< by slot: near so many bodies that it is tested against all; their slots
-    Array<kernels::Totals> totals_;
-    Results<kernels::PairBodies> found_;
-    std::vector<kernels::uint> host_wide_, wide_slots_;
+    Array<kernels::Totals> totals_;       ///< of the list, of changes
+    struct List {
+        Columns counts; ///< by row
+        Array<kernels::PairBodies> pairs;
+        std::size_t count = 0; ///< of pairs
+    };
+    List list_, last_; ///< last_: of the last find()
+    bool has_last_ = false, compares_ = false;
+    Columns changes_; ///< by row
+    Results<kernels::PairDifference> changed_pairs_;
+    std::vector<kernels::uint> host_wide_, wide_slots_, last_wide_; ///< last_wide_: of last_, with whose rows go others
     std::vector<kernels::SortKey> host_order_;
-    std::vector<SlotPair> next_;
+    std::vector<SlotPair> opened_, closed_;
     double tests_ = 0, tests_when_sorted_ = 0; ///< of nodes, in the last search
     unsigned wide_steps_ = 0;                  ///< since some bodies are wide
     bool sorts_next_ = true, gave_up_ = false;

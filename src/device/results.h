@@ -19,9 +19,9 @@ public:
         array_.grow(device, least);
         return array_;
     }
-    /// To be read: as many as are likely.
-    Piece piece() {
-        const std::size_t expected = std::min(expected_, array_.size());
+    /// To be read: as many as are likely, or `least`.
+    Piece piece(std::size_t least = 0) {
+        const std::size_t expected = std::min(std::max(expected_, least), array_.size());
         if (values_.size() < expected) values_.resize(expected);
         read_ = expected;
         return array_.piece(std::span(values_).first(expected));

@@ -16,3 +16,10 @@ STRUCT(WorldBox) {
     uint groups, mask;
 };
 WIRE_SIZE(WorldBox, 56);
+
+// A pair that was not in the last list, or, opened 0, is not any more.
+STRUCT(PairDifference) {
+    uint first, second;
+    uint opened;
+};
+WIRE_SIZE(PairDifference, 12);

@@ -238,17 +238,36 @@ DEVICE uint end_of_block(uint block, uint slots) {
     return slots - BLOCK_BODIES * block < BLOCK_BODIES ? slots : BLOCK_BODIES * (block + 1u);
 }
 
+DEVICE uint blocks_of(uint slots) {
+    return (slots - 1u) / BLOCK_BODIES + 1u;
+}
+
+// A list of pairs has a row for each slot and, behind that of a wide body, one for each of its blocks: so the rows are
+// in the order of the pairs.
+DEVICE uint row_of(uint slot, uint slots, uint wides, READS(uint) wide) {
+    uint below = 0u, end = wides;
+    while (below < end) {
+        const uint middle = below + (end - below) / 2u;
+        if (wide[middle] < slot)
+            below = middle + 1u;
+        else
+            end = middle;
+    }
+    return slot + below * blocks_of(slots);
+}
+
 // How many pairs each body has with one of a greater slot. Item i < slots walks with the i-th box of the order, which
 // near ones share memory with. A body near more than `few`, as a floor is, would keep one item busy for long: it is
 // marked as wide, and the host lists it. The items from `slots` on test a block of bodies against each wide one, in the
-// order of slots. counts: columns of pairs, newly wide bodies, tests of nodes.
+// order of slots. counts: by row, columns of pairs, newly wide bodies, tests of nodes.
 KERNEL void count_partners(COUNT(count), uint slots, uint levels, uint few, READS(BoxNode) tree, READS(SortKey) order,
-                           READS(WorldBox) boxes, READS(uint) wide, WRITES(uint) is_wide, WRITES(uint) counts) {
+                           READS(WorldBox) boxes, uint wides, READS(uint) wide, WRITES(uint) is_wide,
+                           WRITES(uint) counts) {
     FOR_EACH(i, count) {
-        uint pairs = 0u, near = 0u, tests = 0u, row = i;
+        uint pairs = 0u, near = 0u, tests = 0u, row;
         if (i < slots) {
             const uint slot = order[i].slot;
-            row = slot;
+            row = row_of(slot, slots, wides, wide);
             if (is_wide[slot] == 0u && boxes[slot].low[0] <= boxes[slot].high[0]) {
                 BoxWalk walk = begin_walk(boxes + slot, slots, levels, tree);
                 for (uint at = 0u; near <= few && (at = next_near(&walk, slots, levels, tree)) != NONE; ++near) {
@@ -262,8 +281,8 @@ KERNEL void count_partners(COUNT(count), uint slots, uint levels, uint few, READ
                 }
             }
         } else {
-            const uint blocks = (slots - 1u) / BLOCK_BODIES + 1u;
-            const uint block = (i - slots) % blocks, slot = wide[(i - slots) / blocks];
+            const uint block = (i - slots) % blocks_of(slots), slot = wide[(i - slots) / blocks_of(slots)];
+            row = row_of(slot, slots, wides, wide) + 1u + block;
             for (uint other = first_of_block(block, slot); other < end_of_block(block, slots); ++other)
                 pairs += are_pair(boxes + slot, boxes + other);
         }
@@ -286,15 +305,15 @@ DEVICE void sort_partners(WRITES(PairBodies) pairs, uint count) {
         }
 }
 
-// The pairs in the order of their bodies; behind them those of wide bodies, in their order.
+// The pairs in the order of their bodies.
 KERNEL void write_partners(COUNT(count), uint slots, uint levels, READS(BoxNode) tree, READS(SortKey) order,
-                           READS(WorldBox) boxes, READS(uint) wide, READS(uint) counts, READS(uint) firsts,
+                           READS(WorldBox) boxes, uint wides, READS(uint) wide, READS(uint) counts, READS(uint) firsts,
                            WRITES(PairBodies) pairs) {
     FOR_EACH(i, count) {
         if (i < slots) {
-            const uint slot = order[i].slot, found = counts[slot];
+            const uint slot = order[i].slot, row = row_of(slot, slots, wides, wide), found = counts[row];
             if (found == 0u) continue;
-            WRITES(PairBodies) own = pairs + firsts[slot];
+            WRITES(PairBodies) own = pairs + firsts[row];
             BoxWalk walk = begin_walk(boxes + slot, slots, levels, tree);
             for (uint k = 0u; k < found;) {
                 const uint other = order[next_near(&walk, slots, levels, tree)].slot;
@@ -305,9 +324,8 @@ KERNEL void write_partners(COUNT(count), uint slots, uint levels, READS(BoxNode)
             }
             sort_partners(own, found);
         } else {
-            const uint blocks = (slots - 1u) / BLOCK_BODIES + 1u;
-            const uint block = (i - slots) % blocks, slot = wide[(i - slots) / blocks];
-            uint at = firsts[i];
+            const uint block = (i - slots) % blocks_of(slots), slot = wide[(i - slots) / blocks_of(slots)];
+            uint at = firsts[row_of(slot, slots, wides, wide) + 1u + block];
             for (uint other = first_of_block(block, slot); other < end_of_block(block, slots); ++other) {
                 if (are_pair(boxes + slot, boxes + other) == 0u) continue;
                 pairs[at].first = slot;
@@ -315,5 +333,68 @@ KERNEL void write_partners(COUNT(count), uint slots, uint levels, READS(BoxNode)
                 ++at;
             }
         }
+    }
+}
+
+// A row of a list and the same one of the last list, side by side: where each is, and ends.
+STRUCT(TwoRows) {
+    uint at, end;
+    uint last, last_end;
+};
+
+DEVICE TwoRows two_rows(uint row, READS(uint) counts, READS(uint) firsts, READS(uint) last_counts,
+                        READS(uint) last_firsts) {
+    TwoRows rows;
+    rows.at = firsts[row];
+    rows.end = firsts[row] + counts[row];
+    rows.last = last_firsts[row];
+    rows.last_end = last_firsts[row] + last_counts[row];
+    return rows;
+}
+
+// The next pair that is in one of them alone. 0: none is left.
+DEVICE uint next_difference(TwoRows* rows, READS(PairBodies) pairs, READS(PairBodies) last, PairDifference* found) {
+    while (rows->at < rows->end || rows->last < rows->last_end) {
+        const uint own = rows->at < rows->end ? pairs[rows->at].second : NONE;
+        const uint other = rows->last < rows->last_end ? last[rows->last].second : NONE;
+        if (own < other) {
+            found->first = pairs[rows->at].first;
+            found->second = own;
+        } else if (other < own) {
+            found->first = last[rows->last].first;
+            found->second = other;
+        }
+        found->opened = own < other ? 1u : 0u;
+        rows->at += own <= other ? 1u : 0u;
+        rows->last += other <= own ? 1u : 0u;
+        if (own != other) return 1u;
+    }
+    return 0u;
+}
+
+// How many pairs of each row opened or closed since the last list, which has the same rows. totals: of the list, which
+// is not written where it had no room.
+KERNEL void count_changed_pairs(COUNT(count), READS(Totals) totals, uint room, READS(uint) counts, READS(uint) firsts,
+                                READS(PairBodies) pairs, READS(uint) last_counts, READS(uint) last_firsts,
+                                READS(PairBodies) last, WRITES(uint) changes) {
+    FOR_EACH(i, count) {
+        uint found = 0u;
+        if (totals->sums[0] <= room) {
+            TwoRows rows = two_rows(i, counts, firsts, last_counts, last_firsts);
+            PairDifference one;
+            while (next_difference(&rows, pairs, last, &one) != 0u) ++found;
+        }
+        changes[i] = found;
+    }
+}
+
+KERNEL void write_changed_pairs(COUNT(count), READS(uint) counts, READS(uint) firsts, READS(PairBodies) pairs,
+                                READS(uint) last_counts, READS(uint) last_firsts, READS(PairBodies) last,
+                                READS(uint) changes, READS(uint) change_firsts, WRITES(PairDifference) changed) {
+    FOR_EACH(i, count) {
+        if (changes[i] == 0u) continue;
+        TwoRows rows = two_rows(i, counts, firsts, last_counts, last_firsts);
+        PairDifference one;
+        for (uint at = change_firsts[i]; next_difference(&rows, pairs, last, &one) != 0u; ++at) changed[at] = one;
     }
 }

@@ -29,8 +29,8 @@ public:
     bool can_find_in_double() const { return device_->traits().has_double; }
     /// As DeviceBroadPhase; before begin().
     std::size_t known_slots() const { return broad_phase_.slots(); }
-    bool find_pairs(const DeviceBroadPhase::Changes& changes, std::vector<SlotPair>& pairs) {
-        return broad_phase_.find(*device_, changes, pairs);
+    DeviceBroadPhase::Found find_pairs(const DeviceBroadPhase::Changes& changes, bool whole) {
+        return broad_phase_.find(*device_, changes, whole);
     }
 
     /// How it answers a step with these settings.

@@ -10,12 +10,14 @@
 #include <raycontact/device.h>
 #include <raycontact/scene.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cctype>
 #include <cmath>
 #include <functional>
 #include <gtest/gtest.h>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -70,6 +72,13 @@ public:
         world_.cut(slots);
         changes_.cut(slots);
     }
+    /// Where none is.
+    void put(BodySlot slot, std::size_t shape, const Pose& pose) {
+        if (bodies_[slot].shape != nullptr) return;
+        bodies_[slot] = {shapes()[shape].get(), 0, 0, pose, pose, pose};
+        world_.add_shape(*bodies_[slot].shape);
+        mark(slot);
+    }
     void move(BodySlot slot, const Pose& pose) {
         bodies_[slot].pose = pose;
         mark(slot);
@@ -87,27 +96,40 @@ public:
         changes_.forget();
     }
 
-    /// Returns the number of pairs.
-    std::size_t compare() {
+    /// whole: the pairs that were found are lost. Returns the number of pairs.
+    std::size_t compare(bool whole = false) {
         world_.update(*opened_.executor, bodies_, next_, settings_);
         BroadPhase broad_phase;
-        const auto found = broad_phase.find(*opened_.executor, world_.tree(), {world_.boxes(), filters_});
-        const std::vector<SlotPair> expected(found.begin(), found.end());
+        const auto on_host = broad_phase.find(*opened_.executor, world_.tree(), {world_.boxes(), filters_});
+        const std::vector<SlotPair> expected(on_host.begin(), on_host.end());
         const DeviceBroadPhase::Changes changes =
             changes_.list(*opened_.executor, bodies_, next_, filters_, world_, settings_, broad_phase_.slots());
+        const bool knows_all = broad_phase_.slots() == changes.slots;
         device_.take_work();
-        const std::vector<SlotPair> before = pairs_;
-        const bool others = broad_phase_.find(device_, changes, pairs_);
+        const DeviceBroadPhase::Found found = broad_phase_.find(device_, changes, whole);
         work = device_.take_work();
-        EXPECT_EQ(others, pairs_ != before) << id_;
+        EXPECT_TRUE(found.whole || gave_up() || (knows_all && !whole)) << id_;
+        opened = found.opened.size();
+        closed = found.closed.size();
+        wholes += found.whole ? 1 : 0;
+        if (found.whole) pairs_.clear();
+        EXPECT_TRUE(std::ranges::is_sorted(found.opened) && std::ranges::is_sorted(found.closed)) << id_;
+        // Nothing closes that was not open, or opens that was.
+        for (const SlotPair& pair : found.closed) EXPECT_EQ(pairs_.erase(pair), 1u) << id_;
+        for (const SlotPair& pair : found.opened) {
+            EXPECT_TRUE(pairs_.insert(pair).second) << id_;
+            EXPECT_FALSE(std::ranges::binary_search(found.closed, pair)) << id_;
+        }
         EXPECT_EQ(pairs_.size(), expected.size()) << id_;
-        EXPECT_TRUE(pairs_ == expected) << id_;
+        EXPECT_TRUE(std::ranges::equal(pairs_, expected)) << id_;
         return pairs_.size();
     }
 
     bool gave_up() const { return broad_phase_.gave_up(); }
 
     DeviceWork work; ///< of the last compare()
+    std::size_t opened = 0, closed = 0;
+    unsigned wholes = 0; ///< of all
 
 private:
     void mark(BodySlot slot) {
@@ -125,7 +147,7 @@ private:
     std::vector<PlacedBody> bodies_;
     std::vector<Filter> filters_;
     std::vector<Pose> next_;
-    std::vector<SlotPair> pairs_;
+    std::set<SlotPair> pairs_; ///< by what opened and closed
 };
 
 using Place = std::function<Vec3(std::uint32_t)>;
@@ -255,6 +277,98 @@ TEST_P(Devices, look_ahead) {
     EXPECT_GT(bodies.compare(), before + 1000);
 }
 
+// Once the device has a list, it tells of changes alone: whatever comes, but for other slots, and until asked for all.
+TEST_P(Devices, tell_what_opened_and_closed) {
+    Bodies bodies(GetParam());
+    Random random(7);
+    const auto anywhere = [&] { return pose_at(random, 8 * random.in_ball()); };
+    for (std::uint32_t i = 0; i < 800; ++i) bodies.add(1 + i % 4, anywhere());
+    EXPECT_GT(bodies.compare(), 800u);
+    std::size_t opened = 0, closed = 0;
+    for (unsigned step = 0; step < 40; ++step) {
+        const std::uint32_t few = 1 + random.below(40);
+        for (std::uint32_t k = 0; k < few; ++k) {
+            const BodySlot slot = random.below(800);
+            switch (random.below(4)) {
+            case 0:
+                bodies.filter(slot, {1u + random.below(3), 1u + random.below(3)});
+                break;
+            case 1:
+                bodies.remove(slot);
+                break;
+            case 2:
+                bodies.put(slot, 1 + slot % 4, anywhere());
+                break;
+            default:
+                bodies.move(slot, anywhere());
+            }
+        }
+        bodies.compare(step == 20);
+        if (step == 20) continue;
+        EXPECT_EQ(bodies.work.reads, 1u);
+        opened += bodies.opened;
+        closed += bodies.closed;
+    }
+    EXPECT_EQ(bodies.wholes, 2u);
+    EXPECT_GT(opened, 400u);
+    EXPECT_GT(closed, 400u);
+    EXPECT_LT(opened + closed, 20'000u);
+    for (BodySlot slot = 0; slot < 800; ++slot) bodies.remove(slot);
+    EXPECT_EQ(bodies.compare(), 0u); // and all close
+    EXPECT_GT(bodies.closed, 200u);
+    EXPECT_EQ(bodies.wholes, 2u);
+    EXPECT_EQ(bodies.work.reads, 1u);
+    EXPECT_EQ(bodies.compare(), 0u);
+    EXPECT_EQ(bodies.closed, 0u);
+}
+
+// More than there is room for at first; what closes is as much.
+TEST_P(Devices, tell_of_many_changes) {
+    Bodies bodies(GetParam());
+    Random random(8);
+    for (std::uint32_t i = 0; i < 3000; ++i) bodies.add(3, pose_at(random, Vec3{10.0 * i, 0, 0}));
+    EXPECT_EQ(bodies.compare(), 0u);
+    for (int turn = 0; turn < 2; ++turn) {
+        for (BodySlot i = 0; i < 3000; ++i) bodies.move(i, pose_at(random, 14 * random.in_ball()));
+        EXPECT_GT(bodies.compare(), 2000u);
+        EXPECT_GT(bodies.opened, 2000u);
+        for (BodySlot i = 0; i < 3000; ++i) bodies.move(i, pose_at(random, Vec3{10.0 * i, 0, 0}));
+        EXPECT_EQ(bodies.compare(), 0u);
+        EXPECT_GT(bodies.closed, 2000u);
+    }
+    EXPECT_EQ(bodies.wholes, 1u);
+}
+
+// Two floors between others by their slots, of which the order is sought anew: only where bodies become wide, or are no
+// more, the device begins anew.
+TEST_P(Devices, tell_what_opened_and_closed_around_wide_bodies) {
+    Bodies bodies(GetParam());
+    Random random(9);
+    const auto on_it = [&] { return pose_at(random, {3 * random.in_ball().x, 1.5 * random.in_ball().y, 0}); };
+    for (std::uint32_t i = 0; i < 1500; ++i) bodies.add(i == 300 || i == 900 ? 5 : 1, i == 300 ? Pose{} : on_it());
+    bodies.move(900, pose_at(random, {0, 0, 90}));
+    bodies.compare();
+    const unsigned before = bodies.wholes;
+    for (unsigned step = 0; step < 70; ++step) {
+        for (std::uint32_t k = 0; k < 30; ++k) {
+            const BodySlot slot = random.below(1500);
+            if (slot != 300 && slot != 900) bodies.move(slot, on_it());
+        }
+        EXPECT_GT(bodies.compare(), 1000u);
+        EXPECT_LT(bodies.opened, 1000u);
+    }
+    EXPECT_EQ(bodies.wholes, before);
+    bodies.move(900, Pose{});
+    EXPECT_GT(bodies.compare(), 2000u);
+    bodies.move(300, pose_at(random, {0, 0, 90}));
+    bodies.compare();
+    for (unsigned step = 0; step < 40; ++step) {
+        bodies.move(random.below(300), on_it());
+        bodies.compare();
+    }
+    EXPECT_LE(bodies.wholes, before + 3);
+}
+
 // A floor under all, in the first slot or in the last: the launches of a step stay few.
 TEST_P(Devices, take_few_launches_and_one_read) {
     for (const bool last : {false, true}) {
@@ -273,7 +387,7 @@ TEST_P(Devices, take_few_launches_and_one_read) {
             }
             EXPECT_GT(bodies.compare(), 1500u);
         }
-        EXPECT_LE(bodies.work.launches, 6u); // boxes, two for three levels, count, scan, write
+        EXPECT_LE(bodies.work.launches, 9u); // boxes, two for three levels; count, scan, write: pairs, their changes
         EXPECT_EQ(bodies.work.reads, 1u);
     }
 }

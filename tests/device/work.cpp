@@ -30,9 +30,8 @@ void find_pairs(Part& part, const std::vector<PlacedBody>& bodies) {
     BoxChanges changes;
     WorldBoxes world;
     Executor executor(1);
-    std::vector<SlotPair> pairs;
     const std::vector<BroadPhaseInput::Filter> filters(bodies.size());
-    part.find_pairs(changes.list(executor, bodies, {}, filters, world, {}, part.known_slots()), pairs);
+    part.find_pairs(changes.list(executor, bodies, {}, filters, world, {}, part.known_slots()), false);
 }
 
 void place_centres(std::vector<PlacedBody>& bodies) {

@@ -103,6 +103,8 @@ kernels::uint grain_of(KernelId kernel) {
         return 64;
     case KernelId::make_boxes:
     case KernelId::make_keys:
+    case KernelId::count_changed_pairs:
+    case KernelId::write_changed_pairs:
     case KernelId::place_pairs:
     case KernelId::write_contacts:
     case KernelId::find_margins:
