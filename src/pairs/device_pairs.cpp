@@ -34,10 +34,9 @@ void DevicePairs::place(const Update& update, bool next) {
     open_ = update.open.count();
     changed_.clear();
     const std::span<const kernels::PairBodies> pairs = update.open.bodies();
-    if (!update.open.changes().is_next(seen_)) device_pairs_ = {};
-    update.open.changes().each_since(seen_, pairs.size(), [&](std::uint32_t slot) {
-        changed_.push_back({slot, pairs[slot]});
-    });
+    const SlotChanges& changes = update.open.changes();
+    if (seen_ != changes.now() && !changes.is_next(seen_)) device_pairs_ = {};
+    changes.each_since(seen_, pairs.size(), [&](std::uint32_t slot) { changed_.push_back({slot, pairs[slot]}); });
     device_pairs_.extend(update.device, pairs.size());
     device_changed_.write(update.device, changed_);
     list_moved(update, &PlacedBody::centred, now_);

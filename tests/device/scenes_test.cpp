@@ -126,6 +126,104 @@ bool has_parts() {
     }
 }
 
+// Host and device take turns in finding pairs, by how many bodies moved: many go back to where they were, when the
+// other one saw them.
+TEST(scenes, have_one_list_of_pairs_whoever_finds_them) {
+    std::vector<std::unique_ptr<Scene>> scenes;
+    for (const std::string& device : {std::string("cpu"), tested_device()}) {
+        Settings settings;
+        settings.execution.devices = device;
+        settings.execution.threads = 1;
+        scenes.push_back(std::make_unique<Scene>(settings));
+    }
+    const auto shapes = shapes_of({tetrahedron_mesh(), box_mesh({9, 9, 0.1}), sheet_mesh(2)});
+    Random random(18);
+    std::vector<Pose> places;
+    for (int i = 0; i < 60; ++i) {
+        places.push_back(random.rotation());
+        places.back().translation = 7 * random.in_ball();
+    }
+    const auto place = [&] { return places[random.below(60)]; };
+    std::vector<BodyId> bodies;
+    const auto add = [&] {
+        const Pose pose = place();
+        const std::size_t shape = random.below(40) == 0 ? 1 + random.below(2) : 0;
+        BodyId id;
+        for (auto& scene : scenes) id = scene->add(shapes[shape], pose);
+        bodies.push_back(id);
+    };
+    for (int i = 0; i < 400; ++i) add();
+    std::size_t others = 0;
+    std::vector<Pair> before;
+    for (int step = 0; step < 120 && !HasFailure(); ++step) {
+        const std::uint32_t kind = random.below(8);
+        const std::uint32_t moving = kind == 0 ? 0 : kind < 6 ? 1 + random.below(20) : 100 + random.below(300);
+        for (std::uint32_t k = 0; k < moving; ++k) {
+            const BodyId id = bodies[random.below(static_cast<std::uint32_t>(bodies.size()))];
+            const Pose pose = place();
+            for (auto& scene : scenes) scene->set_pose(id, pose);
+        }
+        if (random.below(4) == 0) {
+            const BodyId id = bodies[random.below(static_cast<std::uint32_t>(bodies.size()))];
+            const std::uint32_t groups = 1 + random.below(3);
+            for (auto& scene : scenes) scene->set_filter(id, groups, 3 - groups / 2);
+        }
+        for (std::uint32_t k = random.below(6) / 4 * (1 + random.below(9)); k > 0; --k) {
+            std::swap(bodies[random.below(static_cast<std::uint32_t>(bodies.size()))], bodies.back());
+            for (auto& scene : scenes) scene->remove(bodies.back());
+            bodies.pop_back();
+        }
+        if (random.below(5) == 0) add();
+        if (step == 70) // and many slots are no more
+            for (; bodies.size() > 150; bodies.pop_back())
+                for (auto& scene : scenes) scene->remove(bodies.back());
+        const std::uint32_t asked = random.below(12);
+        for (auto& scene : scenes) {
+            if (asked == 0) scene->closest_point({0, 0, 0}); // a query brings the boxes up to date
+            if (asked == 1) scene->find_contacts(std::vector<Pair>{{bodies[0], bodies[1]}});
+            if (asked == 2) {
+                Settings settings = scene->settings();
+                settings.speculative = !settings.speculative;
+                scene->set_settings(settings);
+            }
+            scene->find_contacts();
+        }
+        const std::vector<Pair> expected(scenes[0]->pairs().begin(), scenes[0]->pairs().end());
+        EXPECT_TRUE(std::ranges::equal(scenes[1]->pairs(), expected)) << "step " << step;
+        EXPECT_GT(expected.size(), 50u);
+        others += expected != before ? 1 : 0;
+        before = expected;
+    }
+    EXPECT_GT(others, 90u);
+}
+
+// Apart from finding pairs, a step without any asks nothing of a device.
+TEST(scenes, find_what_became_of_a_few_pairs_on_the_host) {
+    Settings settings;
+    settings.execution.devices = tested_device();
+    Scene scene(settings);
+    const auto shape = Shape::make(tetrahedron_mesh());
+    for (std::uint32_t i = 0; i < 320; ++i) scene.add(shape, {{1, 0, 0, 0, 1, 0, 0, 0, 1}, {9.0 * i, 0, 0}});
+    const auto launches = [&](std::uint32_t moving) {
+        for (std::uint32_t i = 0; i < moving; ++i) {
+            Pose pose = scene.pose({i});
+            pose.translation.y += 0.5;
+            scene.set_pose({i}, pose);
+        }
+        scene.find_contacts();
+        return scene.stats().details.work[0].launches;
+    };
+    EXPECT_GT(launches(0), 0u);
+    EXPECT_EQ(launches(0), 0u);
+    for (int turn = 0; turn < 2; ++turn) {
+        EXPECT_EQ(launches(19), 0u);
+        EXPECT_EQ(launches(0), 0u);
+        EXPECT_EQ(launches(19), 0u);
+        EXPECT_GT(launches(20), 0u);
+        EXPECT_GT(launches(320), 0u);
+    }
+}
+
 TEST(scenes, have_one_hash_on_another_device) {
     expect_the_cpus_hash(tested_device());
 }
