@@ -101,7 +101,6 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, const SlotChanges& mo
     stats.details.work = std::move(work);
     stats.broad_ms = broad_ms;
     prepare();
-    Executor& executor = parts_.executor();
     try {
         if (const auto lost = parts_.take_lost(); !lost.empty()) give_away(lost, stats);
         assignment_.assign(pairs, balance_);
@@ -116,6 +115,7 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, const SlotChanges& mo
         assignment_.step_done();
         while (!failed.empty()) failed = replace(failed, stats);
         std::vector<Contact>& found = merge();
+        Executor& executor = parts_.executor(); // of a part that is left
         const ContactStore::Asked asked{!few_, asked_.pairs, pairs.closed()};
         reducer_.run(executor, settings_, bodies, contacts_, found);
         stats.details.contacts_merged = reducer_.merged();
