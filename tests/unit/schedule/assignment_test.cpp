@@ -96,6 +96,7 @@ TEST_F(Assignments, GiveAwayAndMove) {
 // What the first part knows of its pairs goes by their slots, which stay when others come beside it.
 TEST_F(Assignments, AddAPartBesideTheOnlyOne) {
     assignment = Assignment(1);
+    balance.drop(2); // there are two at most
     assign(chain(20));
     const PairList all = open.all(executor);
     assignment.add_part();
