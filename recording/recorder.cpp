@@ -89,6 +89,12 @@ void Recorder::record() {
                          "recording has one "
                          "set of them, so begin another");
     s.follow_bodies();
+    for (const Contact& contact : s.scene.contacts())
+        for (const BodyId body : {contact.body_a, contact.body_b})
+            if (!s.scene.has(body))
+                throw InputError("Recorder::record: body " + std::to_string(body.slot) + " (generation "
+                                 + std::to_string(body.generation)
+                                 + ") is not there; record a step before bodies of its contacts are removed");
     const std::uint32_t step = s.writer.steps();
     s.writer.step(s.scene); // first: a step that is refused is in neither
     s.hash.add(step, s.scene.contacts());

@@ -264,8 +264,8 @@ struct Scene::State {
         narrow.prepare();
         try {
             look_ahead();
-            if (pairs.slots().is_mostly_empty()) drop_pairs();
             const double broad_ms = find_pairs();
+            if (pairs.compact(narrow.parts().executor())) moved.forget();
             if (pairs.have_changed()) names_stand = false;
             if (rests()) return rest(broad_ms);
             call_threads(pairs.slots().count());
@@ -552,9 +552,8 @@ std::span<const Contact> Scene::find_contacts() {
 
 std::span<const Contact> Scene::find_contacts(std::span<const Pair> pairs) {
     const FloatEnvironment environment;
-    bool others = state_->read_pairs(pairs);
+    const bool others = state_->read_pairs(pairs);
     state_->all_or_nothing([&] {
-        if (!others && !state_->given_stand) others = state_->read_pairs(pairs);
         if (others) state_->set_pairs();
         return 0.0;
     });

@@ -31,11 +31,11 @@ void DevicePairs::list_moved(const Update& update, Pose PlacedBody::*pose, Placi
 
 void DevicePairs::place(const Update& update, bool next) {
     if (update.open.count() >= NONE / 2) throw InputError("more than 2^31 pairs in one step; give fewer");
-    open_ = update.open.count();
     changed_.clear();
     const std::span<const kernels::PairBodies> pairs = update.open.bodies();
     const SlotChanges& changes = update.open.changes();
-    if (seen_ != changes.now() && !changes.is_next(seen_)) device_pairs_ = {};
+    if (seen_ != changes.now() && !changes.is_next(seen_)) clear();
+    open_ = update.open.count();
     changes.each_since(seen_, pairs.size(), [&](std::uint32_t slot) { changed_.push_back({slot, pairs[slot]}); });
     device_pairs_.extend(update.device, pairs.size());
     device_changed_.write(update.device, changed_);

@@ -52,6 +52,14 @@ void OpenPairs::clear() noexcept {
     has_all_ = true;
 }
 
+bool OpenPairs::compact(Executor& executor) {
+    if (!slots_.is_mostly_empty()) return false;
+    const std::vector<SlotPair> pairs = all(executor).pairs;
+    clear();
+    set_all(executor, pairs);
+    return true;
+}
+
 const PairList& OpenPairs::all(Executor& executor) {
     if (has_all_) return all_;
     find(

@@ -26,6 +26,9 @@ public:
     void close_all_of(BodySlot body) noexcept;
     /// Closes all, and frees their memory.
     void clear() noexcept;
+    /// Gives them the lowest slots, and memory back, where few of many slots are in use: then true, and what keeps
+    /// something of pairs begins anew.
+    bool compact(Executor& executor);
 
     const PairSlots& slots() const { return slots_; }
     /// All, in order. Not on two threads at once.

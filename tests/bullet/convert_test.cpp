@@ -194,7 +194,7 @@ TEST(Convert, AddBodyMakesTheShapeAhead) {
 
 TEST(Convert, AShapeTakesAQuarterOfAKilobyteATriangle) {
     const auto shape = Shape::make(scenes::scene_model("torus", 50000).mesh);
-    EXPECT_LT(shape->memory_bytes(), 250 * shape->triangles().size());
+    EXPECT_LT(shape->memory_bytes(), 256 * shape->triangles().size());
 }
 
 } // namespace
