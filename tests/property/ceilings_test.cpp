@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many launches and waits a step takes. These ceilings only ever fall.
+// How many launches and waits a step takes. A ceiling rises only with what a step does more.
 #include "property/shapes.h"
 #include "reference/random.h"
 #include "reference/vector.h"
