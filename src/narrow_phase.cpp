@@ -110,7 +110,7 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, const SlotChanges& mo
             if (!move || !move_pairs(*move, bodies, stats)) break;
         }
         few_ = asks_few(moved, bodies.size());
-        assignment_.ask(list_asked(moved, pairs));
+        assignment_.ask(parts_.executor(), list_asked(moved, pairs));
         auto failed = parts_.run([&](std::size_t part) { find(part, bodies, moved); });
         assignment_.step_done();
         while (!failed.empty()) failed = replace(failed, stats);

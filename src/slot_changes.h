@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <new>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace raycontact {
@@ -19,42 +19,26 @@ public:
     /// What a user has seen: a step's number.
     using Seen = std::uint64_t;
 
-    SlotChanges() = default;
-    SlotChanges(SlotChanges&&) noexcept = default;
-    SlotChanges& operator=(SlotChanges&&) noexcept = default;
-    /// With the room that mark() needs.
-    SlotChanges(const SlotChanges& other) : marked_(other.marked_), step_(other.step_) {
-        list_.reserve(marked_.size());
-        list_.assign(other.list_.begin(), other.list_.end());
-    }
-    SlotChanges& operator=(const SlotChanges& other) { return *this = SlotChanges(other); }
-    ~SlotChanges() = default;
-
     /// For slots below this, so that mark() cannot fail.
     void make_room(std::size_t slots) {
-        if (marked_.size() < slots) marked_.resize(slots, 0);
-        if (list_.capacity() < slots) list_.reserve(marked_.capacity());
+        if (marked_.size() >= slots) return;
+        list_.resize(slots);
+        marked_.resize(slots, 0);
     }
     /// Frees the memory of slots from this on, which are empty; any other may have changed then.
     void cut(std::size_t slots) noexcept {
         forget();
         marked_.resize(std::min(slots, marked_.size()));
+        list_.resize(marked_.size());
         marked_.shrink_to_fit();
         list_.shrink_to_fit();
-        try {
-            list_.reserve(marked_.size());
-        } catch (const std::bad_alloc&) {
-        }
     }
     void mark(Slot slot) noexcept {
-        if (marked_[slot] != 0) return;
-        if (list_.size() == list_.capacity()) return forget(); // after a cut that lacked memory
-        marked_[slot] = 1;
-        list_.push_back(slot);
+        if (std::exchange(marked_[slot], 1) == 0) list_[count_++] = slot;
     }
     bool is_marked(Slot slot) const { return marked_[slot] != 0; }
     /// In the order of their marks, each once.
-    std::span<const Slot> list() const { return list_; }
+    std::span<const Slot> list() const { return std::span(list_).first(count_); }
 
     /// The step that is being made.
     Seen now() const { return step_; }
@@ -93,19 +77,20 @@ private:
             run(slots, work);
             return true;
         }
-        run(list_.size(), [&](std::uint32_t i) {
+        run(count_, [&](std::uint32_t i) {
             if (list_[i] < slots) work(list_[i]);
         });
         return false;
     }
 
     void next_step(Seen by) noexcept {
-        for (const Slot slot : list_) marked_[slot] = 0;
-        list_.clear();
+        for (const Slot slot : list()) marked_[slot] = 0;
+        count_ = 0;
         step_ += by;
     }
 
-    std::vector<Slot> list_;   ///< in the order of their marks
+    std::vector<Slot> list_; ///< in the order of their marks: the first count_; with room for all slots
+    std::size_t count_ = 0;
     std::vector<char> marked_; ///< by slot
     Seen step_ = 2;            ///< a user that has seen none has 0
 };

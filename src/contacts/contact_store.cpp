@@ -30,10 +30,6 @@ ContactFeature feature_of(std::uint64_t key) {
             of_a ? none : vertex};
 }
 
-std::uint64_t pair_number(const SlotPair& pair) {
-    return std::uint64_t{pair.first} << 32 | pair.second;
-}
-
 } // namespace
 
 void ContactStore::Sums::add(const Sums& other) {
@@ -85,11 +81,10 @@ ContactStore::Range ContactStore::range_of(const SlotPair& pair) const {
     const std::span<const Contact> contacts = all();
     const std::size_t from = block == 0 ? 0 : (block - 1) * block_size;
     const auto here = contacts.subspan(from, std::min(contacts.size(), block * block_size) - from);
-    const auto number_of = [](const Contact& contact) { return raycontact::pair_number(contact); };
     const std::size_t begin =
-        from + static_cast<std::size_t>(std::ranges::lower_bound(here, number, {}, number_of) - here.begin());
+        from + static_cast<std::size_t>(std::ranges::lower_bound(here, number, {}, number_of_pair) - here.begin());
     std::size_t end = begin;
-    while (end < contacts.size() && number_of(contacts[end]) == number) ++end;
+    while (end < contacts.size() && number_of_pair(contacts[end]) == number) ++end;
     return {begin, end};
 }
 
@@ -145,12 +140,11 @@ void ContactStore::compare(const Range& old_range, std::span<Contact> found, Sli
 void ContactStore::replace_all(Executor& executor, std::vector<Contact>& found) {
     const RowSlices rows{found.size()};
     const std::span<Slice> slices = begin_slices(rows.count());
-    const auto pair_at = [&](std::size_t i) { return raycontact::pair_number(found[i]); };
-    const auto number_of = [](const Contact& contact) { return raycontact::pair_number(contact); };
+    const auto pair_at = [&](std::size_t i) { return number_of_pair(found[i]); };
     rows.each(
         executor, [&](std::size_t i) { return pair_at(i) == pair_at(i - 1); },
         [&](std::uint32_t slice, std::size_t begin, std::size_t end) {
-            const auto old = beside(all(), begin, end, found.size(), pair_at, number_of);
+            const auto old = beside(all(), begin, end, found.size(), pair_at, number_of_pair);
             const auto first = static_cast<std::size_t>(old.begin() - all().begin());
             compare({first, first + old.size()}, std::span(found).subspan(begin, end - begin), slices[slice]);
         });
@@ -305,7 +299,7 @@ void ContactStore::rest(Executor& executor) {
 void ContactStore::fill(std::size_t block, std::span<const Contact> contacts) {
     const std::size_t begin = block * block_size, end = std::min(contacts.size(), begin + block_size);
     Block& own = blocks_[block];
-    own = {raycontact::pair_number(contacts[begin]), {}};
+    own = {number_of_pair(contacts[begin]), {}};
     for (const Contact& contact : contacts.subspan(begin, end - begin)) {
         const bool touches = !contact.is_speculative();
         own.sums.add({0, std::uint64_t{!touches}, touches ? double(contact.ray_length) : 0, double(contact.depth)});

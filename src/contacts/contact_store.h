@@ -51,7 +51,7 @@ public:
 private:
     static constexpr std::size_t block_size = 128; ///< contacts
     struct Block {
-        std::uint64_t first = 0; ///< pair_number() of its first contact
+        std::uint64_t first = 0; ///< number_of_pair() of its first contact
         Sums sums;
     };
     /// Contacts in a row, by place.

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace raycontact {
 
@@ -76,38 +77,54 @@ void ContactReducer::run(Executor& executor, const Settings& settings, std::span
                          const ContactStore& last, std::vector<Contact>& contacts) {
     clear();
     if (settings.max_contacts_per_pair == 0 && settings.max_contacts == 0) return;
-    const auto count = static_cast<std::uint32_t>(contacts.size());
-    begins_.clear();
-    for (std::uint32_t i = 0; i < count; ++i)
-        if (i == 0 || pair_of(contacts[i]) != pair_of(contacts[i - 1])) begins_.push_back(i);
-    begins_.push_back(count);
-    ranks_.resize(count);
+    ranks_.resize(contacts.size());
+    const RowSlices rows{contacts.size(), 256};
+    const auto belongs = [&](std::size_t i) { return pair_of(contacts[i]) == pair_of(contacts[i - 1]); };
     const std::uint32_t most_of_pair =
         settings.max_contacts_per_pair == 0 ? merged_away : settings.max_contacts_per_pair;
-    executor.run(static_cast<std::uint32_t>(begins_.size() - 1), 16, [&](std::uint32_t begin, std::uint32_t end) {
+    rows.each(executor, belongs, [&](std::uint32_t, std::size_t begin, std::size_t end) {
         Work work;
-        for (std::uint32_t p = begin; p < end; ++p) {
-            const std::span own(contacts.begin() + begins_[p], contacts.begin() + begins_[p + 1]);
-            const std::span ranks(ranks_.begin() + begins_[p], own.size());
-            rank(work, bodies, last, own, ranks);
+        for (std::size_t next = begin; begin < end; begin = next) {
+            while (++next < end && belongs(next)) {
+            }
+            const std::span ranks(ranks_.begin() + std::ptrdiff_t(begin), next - begin);
+            rank(work, bodies, last, std::span<const Contact>(contacts).subspan(begin, next - begin), ranks);
             for (std::uint32_t& one : ranks)
                 if (one >= most_of_pair && one < merged_away) one = not_chosen;
         }
     });
     if (settings.max_contacts != 0) keep_budget(settings.max_contacts, contacts);
-    std::size_t kept = 0;
-    for (std::uint32_t i = 0; i < count; ++i) {
-        if (ranks_[i] < merged_away)
-            contacts[kept++] = contacts[i];
-        else
-            left_out_.push_back(contacts[i]);
-        if (ranks_[i] == merged_away) ++merged_;
+    divide(executor, rows, contacts);
+}
+
+// Into those that stay, and those left out.
+void ContactReducer::divide(Executor& executor, const RowSlices& rows, std::vector<Contact>& contacts) {
+    const auto alone = [](std::size_t) { return false; };
+    slices_.assign(rows.count(), {});
+    rows.each(executor, alone, [&](std::uint32_t slice, std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            ++(ranks_[i] < merged_away ? slices_[slice].kept : slices_[slice].left_out);
+            slices_[slice].merged += ranks_[i] == merged_away ? 1 : 0;
+        }
+    });
+    std::size_t kept = 0, left_out = 0;
+    for (Slice& slice : slices_) {
+        kept += std::exchange(slice.kept, kept);
+        left_out += std::exchange(slice.left_out, left_out);
+        merged_ += slice.merged;
     }
-    contacts.resize(kept);
+    kept_.resize(kept);
+    left_out_.resize(left_out);
+    rows.each(executor, alone, [&](std::uint32_t s, std::size_t begin, std::size_t end) {
+        Slice& slice = slices_[s];
+        for (std::size_t i = begin; i < end; ++i)
+            (ranks_[i] < merged_away ? kept_[slice.kept++] : left_out_[slice.left_out++]) = contacts[i];
+    });
+    contacts.swap(kept_);
 }
 
 void ContactReducer::trim() {
-    free_all(ranks_, begins_, rest_);
+    free_all(ranks_, rest_, slices_, kept_);
     left_out_.shrink_to_fit();
 }
 

@@ -3,6 +3,7 @@
 
 #include "contacts/contact_store.h"
 #include "executor/executor.h"
+#include "executor/row_slices.h"
 #include "pairs/directed_pairs.h"
 
 #include <raycontact/manifold.h>
@@ -37,11 +38,17 @@ private:
     void rank(Work& work, std::span<const PlacedBody> bodies, const ContactStore& last,
               std::span<const Contact> contacts, std::span<std::uint32_t> ranks) const;
     void keep_budget(std::uint64_t most, std::span<const Contact> contacts);
+    void divide(Executor& executor, const RowSlices& rows, std::vector<Contact>& contacts);
 
-    std::vector<std::uint32_t> ranks_;  ///< of each contact in its pair: 0 for the deepest; a name below for others
-    std::vector<std::uint32_t> begins_; ///< of the pairs
-    std::vector<std::uint32_t> rest_;   ///< contacts that the budget may leave out
-    std::vector<Contact> left_out_;
+    /// What stays of some pairs in a row, and what does not.
+    struct Slice {
+        std::size_t kept, left_out;
+        std::uint64_t merged;
+    };
+    std::vector<std::uint32_t> ranks_; ///< of each contact in its pair: 0 for the deepest; a name below for others
+    std::vector<std::uint32_t> rest_;  ///< contacts that the budget may leave out
+    std::vector<Slice> slices_;
+    std::vector<Contact> kept_, left_out_;
     std::uint64_t merged_ = 0;
 };
 

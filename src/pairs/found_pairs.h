@@ -38,11 +38,7 @@ public:
         lists_.assign(slices_.begin(), slices_.begin() + std::ptrdiff_t(slice_count_));
         sorter_.run(executor, bodies, lists_, sorted_);
         sorted_.erase(std::unique(sorted_.begin(), sorted_.end()), sorted_.end());
-        list_.resize(sorted_.size());
-        executor.each(sorted_.size(), 8192, [&](std::uint32_t i) {
-            list_.pairs[i] = sorted_[i].pair;
-            list_.slots[i] = sorted_[i].slot;
-        });
+        list_.assign(executor, sorted_);
         set_places(executor, open, list_.slots);
     }
     const PairList& pairs() const { return list_; }

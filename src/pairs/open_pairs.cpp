@@ -173,11 +173,7 @@ void OpenPairs::find(Executor& executor, std::size_t count, BodyAt&& body_at, Is
 void OpenPairs::list_found(Executor& executor, PairList& list) {
     lists_.assign(found_.begin(), found_.end());
     sorter_.run(executor, heads_.size(), lists_, sorted_);
-    list.resize(sorted_.size());
-    executor.each(sorted_.size(), 8192, [&](std::uint32_t i) {
-        list.pairs[i] = sorted_[i].pair;
-        list.slots[i] = sorted_[i].slot;
-    });
+    list.assign(executor, sorted_);
 }
 
 // `now` takes the place of the listed ones, in the list as well. Returns whether they were others.

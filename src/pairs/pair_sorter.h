@@ -3,7 +3,7 @@
 
 #include "executor/executor.h"
 #include "executor/sum_up.h"
-#include "slot_pair.h"
+#include "pairs/pair_list.h"
 
 #include <algorithm>
 #include <atomic>
@@ -12,13 +12,6 @@
 #include <vector>
 
 namespace raycontact {
-
-/// A pair and its slot (PairSlots).
-struct OpenPair {
-    SlotPair pair;
-    std::uint32_t slot;
-    auto operator<=>(const OpenPair&) const = default;
-};
 
 /// Sorts pairs: a few as they are, many by counting those of each first body, then each body's by the second.
 template <class T>

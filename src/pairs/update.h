@@ -4,6 +4,7 @@
 #include "executor/executor.h"
 #include "pairs/directed_pairs.h"
 #include "pairs/motion.h"
+#include "pairs/pair_list.h"
 #include "pairs/pair_slots.h"
 #include "shape/shape_store.h"
 

@@ -2,6 +2,7 @@
 #include "schedule/assignment.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace raycontact {
 
@@ -49,14 +50,31 @@ void Assignment::add_part() {
     parts_.emplace_back();
 }
 
-void Assignment::ask(const PairList& asked) {
+// Slices of the list are counted by part, and then put behind one another.
+void Assignment::ask(Executor& executor, const PairList& asked) {
+    constexpr std::size_t at_once = 4096;
     asked_ = &asked;
     if (alone()) return;
-    for (Own& own : parts_) own.asked.resize(0);
-    for (std::size_t i = 0; i < asked.size(); ++i) {
-        const auto [part, slot] = places_[asked.slots[i]];
-        parts_[part].asked.add(asked.pairs[i], slot);
+    const std::size_t parts = parts_.size(), slices = (asked.size() + at_once - 1) / at_once;
+    ends_.assign(parts * slices, 0);
+    const auto each = [&](std::uint32_t slice, auto&& work) {
+        for (std::size_t i = slice * at_once; i < std::min(asked.size(), (slice + 1) * at_once); ++i)
+            work(i, places_[asked.slots[i]]);
+    };
+    executor.each(slices, 1, [&](std::uint32_t slice) {
+        each(slice, [&](std::size_t, const Place& place) { ++ends_[place.part * slices + slice]; });
+    });
+    for (std::size_t part = 0; part < parts; ++part) {
+        std::size_t count = 0;
+        for (std::size_t slice = 0; slice < slices; ++slice)
+            count += std::exchange(ends_[part * slices + slice], count);
+        parts_[part].asked.resize(count);
     }
+    executor.each(slices, 1, [&](std::uint32_t slice) {
+        each(slice, [&](std::size_t i, const Place& place) {
+            parts_[place.part].asked.set(ends_[place.part * slices + slice]++, {asked.pairs[i], place.slot});
+        });
+    });
 }
 
 PairList Assignment::all_on(std::size_t part) const {
@@ -66,7 +84,7 @@ PairList Assignment::all_on(std::size_t part) const {
         if (open.is_open(slot)) sorted.push_back({open[slot], slot});
     std::ranges::sort(sorted);
     PairList list;
-    for (const auto& [pair, slot] : sorted) list.add(pair, slot);
+    for (const OpenPair& own : sorted) list.add(own);
     return list;
 }
 
@@ -80,7 +98,7 @@ std::vector<PairList> Assignment::give_away(std::span<const std::size_t> from, B
     for (const auto& [pair, slot] : going) {
         take(slot);
         put(slot, balance.part_for_new_pair());
-        given[places_[slot].part].add(pair, places_[slot].slot);
+        given[places_[slot].part].add({pair, places_[slot].slot});
     }
     return given;
 }

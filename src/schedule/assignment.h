@@ -5,7 +5,6 @@
 #include "schedule/balance.h"
 
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,7 +21,7 @@ public:
     /// pairs: of a step; valid until the next call. New pairs go where the load is least.
     void assign(const OpenPairs& pairs, Balance& balance);
     /// What of a sorted list is on each part, for asked_of(). The list stays valid for the step.
-    void ask(const PairList& asked);
+    void ask(Executor& executor, const PairList& asked);
 
     const PairSlots& open_on(std::size_t part) const { return alone() ? pairs_->slots() : parts_[part].open; }
     /// In order, by the slots of the part.
@@ -59,7 +58,8 @@ private:
     const OpenPairs* pairs_ = nullptr;
     const PairList* asked_ = nullptr;
     std::vector<Own> parts_;
-    std::vector<Place> places_; ///< by slot of the scene
+    std::vector<Place> places_;     ///< by slot of the scene
+    std::vector<std::size_t> ends_; ///< of ask(): by part, then slice
     SlotChanges::Seen seen_ = 0;
 };
 

@@ -30,7 +30,7 @@ public:
     /// What was measured is of other settings.
     void forget();
 
-    /// What is chosen, and why: "cpu: 1.2 ms a step, cuda:0 3.41 ms, measured with 7650 pairs". names: of both parts.
+    /// What is chosen, and why: "cpu: 1.2 ms a step, gpu:0 3.41 ms, measured with 7650 pairs". names: of both parts.
     std::string text(const std::array<std::string, 2>& names) const;
 
 private:

@@ -39,7 +39,7 @@ MovingPairs choose_moving(const PairList& list, std::span<const Contact> contact
     std::uint64_t moved = 0;
     for (std::size_t i = 0; i < pairs.size(); ++i) {
         if (!chosen.contains(pairs[i].first) && !chosen.contains(pairs[i].second)) continue;
-        moving.pairs.add(pairs[i], list.slots[i]);
+        moving.pairs.add({pairs[i], list.slots[i]});
         moved += weights[i];
     }
     if (all > 0) moving.share = static_cast<double>(moved) / static_cast<double>(all);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "pairs/pair_slots.h"
+#include "pairs/pair_list.h"
 
 #include <raycontact/contact.h>
 

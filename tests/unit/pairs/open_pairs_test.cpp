@@ -88,7 +88,7 @@ public:
         open_.list_of(executor_, moved, asked);
         for (const auto& [pair, slot] : slots)
             if (moved.is_marked(pair.first) || moved.is_marked(pair.second) || open_.slots().changes().is_marked(slot))
-                expected.add(pair, slot);
+                expected.add({pair, slot});
         EXPECT_EQ(asked.pairs, expected.pairs);
         EXPECT_EQ(asked.slots, expected.slots);
         last_ = slots;

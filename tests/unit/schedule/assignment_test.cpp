@@ -23,7 +23,7 @@ protected:
         assignment.step_done();
         open.set_all(executor, pairs);
         assignment.assign(open, balance);
-        assignment.ask(open.all(executor));
+        assignment.ask(executor, open.all(executor));
     }
     std::size_t part_of(const SlotPair& pair) {
         const PairList& all = open.all(executor);
@@ -83,7 +83,7 @@ TEST_F(Assignments, GiveAwayAndMove) {
 
     const PairList all = assignment.all_on(0);
     PairList moving;
-    for (const std::size_t i : {std::size_t{0}, all.size() - 1}) moving.add(all.pairs[i], all.slots[i]);
+    for (const std::size_t i : {std::size_t{0}, all.size() - 1}) moving.add({all.pairs[i], all.slots[i]});
     const std::size_t count = count_on(2);
     assignment.move(moving, 0, 2);
     EXPECT_EQ(count_on(2), count + 2);
@@ -100,7 +100,7 @@ TEST_F(Assignments, AddAPartBesideTheOnlyOne) {
     assign(chain(20));
     const PairList all = open.all(executor);
     assignment.add_part();
-    assignment.ask(open.all(executor));
+    assignment.ask(executor, open.all(executor));
     EXPECT_EQ(assignment.asked_of(0).slots, all.slots);
     EXPECT_EQ(assignment.open_on(0).changes().now(), open.slots().changes().now());
     EXPECT_EQ(count_on(1), 0u);
