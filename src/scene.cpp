@@ -2,20 +2,18 @@
 #include <raycontact/scene.h>
 
 #include "body_slots.h"
-#include "box_changes.h"
-#include "broadphase/broad_phase.h"
 #include "contacts/column_writer.h"
 #include "contacts/predictions.h"
 #include "executor/float_environment.h"
 #include "free_all.h"
 #include "narrow_phase.h"
 #include "next_poses.h"
+#include "pair_finder.h"
 #include "pose_fault.h"
 #include "read_poses.h"
 #include "shape/preparer.h"
 #include "shape/shape_data.h"
 #include "slot_changes.h"
-#include "world_boxes.h"
 
 #include <raycontact/error.h>
 
@@ -26,7 +24,6 @@
 #include <limits>
 #include <memory>
 #include <mutex>
-#include <optional>
 #include <unordered_map>
 
 namespace raycontact {
@@ -83,21 +80,11 @@ struct Scene::State {
 
     void mark(BodySlot slot) noexcept {
         moved.mark(slot);
-        mark_box(slot);
-    }
-    void mark_box(BodySlot slot) noexcept {
-        world.mark(slot);
-        box_changes.mark(slot);
-        unlisted.mark(slot);
+        finder.mark(slot);
     }
     void forget_moves() noexcept {
         moved.forget();
-        forget_boxes();
-    }
-    void forget_boxes() noexcept {
-        world.forget();
-        box_changes.forget();
-        unlisted.forget();
+        finder.forget();
     }
 
     void pack_shapes() {
@@ -152,58 +139,9 @@ struct Scene::State {
         }
     }
 
-    /// A device walks with all bodies, the host with those that moved: where they are few, the host goes on with the
-    /// pairs, whoever found them.
-    void find_pairs() {
-        constexpr std::size_t few_of = 16;
-        given_stand = false;
-        const float reach = world.reach(bodies);
-        const bool stood = unlisted.is_next(listed) && reach == listed_reach;
-        listed = 0; // until they are found again
-        const std::size_t count = unlisted.list().size();
-        const bool few = stood && count < bodies.size() / few_of;
-        if ((!stood || count > 0) && (few || !find_pairs_on_device())) find_pairs_on_host(stood);
-        listed = unlisted.step_done();
-        listed_reach = reach;
-    }
-
-    void find_pairs_on_host(bool stood) {
-        Executor& executor = narrow.parts().executor();
-        listing_part.reset();
-        world.update(executor, bodies, next, narrow.settings());
-        const BroadPhaseInput input{world.boxes(), filters};
-        if (!stood) return pairs.set_all(executor, broad_phase.find(executor, world.tree(), input));
-        others.clear();
-        for (const BodySlot slot : unlisted.list())
-            if (slot < world.boxes().size()) others.push_back(slot);
-        broad_phase.update(executor, world.tree(), input, others, pairs);
-    }
-
-    /// False: the part that would is not one that can. Where one fails, the next goes on.
-    bool find_pairs_on_device() {
-        Parts& parts = narrow.parts();
-        for (;;) {
-            const std::size_t first = narrow.first_part();
-            if (!parts[first].can_find_pairs()) return false;
-            const DeviceBroadPhase::Changes changes = box_changes.list(parts.executor(), bodies, next, filters, world,
-                                                                       narrow.settings(), parts[first].known_slots());
-            const bool whole = std::exchange(listing_part, std::nullopt) != first;
-            DeviceBroadPhase::Found found;
-            if (!parts.before_step(first, [&] { found = parts[first].find_pairs(changes, whole); })) continue;
-            if (!parts[first].can_find_pairs()) return false;
-            if (found.whole)
-                pairs.set_all(parts.executor(), found.opened);
-            else
-                pairs.apply(found.opened, found.closed);
-            listing_part = first;
-            return true;
-        }
-    }
-
-    /// For queries between two steps, of which several may run at once.
-    void refresh_boxes() {
+    const WorldBoxes& up_to_date_boxes() {
         const std::lock_guard lock(refreshing);
-        if (!world.is_up_to_date()) world.update(narrow.parts().executor(), bodies, next, narrow.settings());
+        return finder.boxes(narrow, bodies, next);
     }
 
     /// The open pairs by id, as they are asked for.
@@ -251,8 +189,7 @@ struct Scene::State {
     }
 
     void set_pairs() {
-        listed = 0;
-        listing_part.reset();
+        finder.drop_list();
         given_stand = false;
         pairs.set_all(narrow.parts().executor(), given_pairs);
         given_stand = true;
@@ -272,7 +209,7 @@ struct Scene::State {
             find_contacts(broad_ms);
         } catch (...) {
             narrow.parts().forget(); // slots may get other bodies before the next step
-            broad_phase.trim();
+            finder.trim();
             drop_pairs();
             narrow.drop_contacts();
             throw;
@@ -283,7 +220,7 @@ struct Scene::State {
     void drop_pairs() noexcept {
         forget_moves();
         pairs.clear();
-        listing_part.reset();
+        finder.drop_list();
         given_stand = names_stand = false;
     }
 
@@ -293,8 +230,8 @@ struct Scene::State {
         if (!narrow.settings().is_speculative()) return;
         const SlotChanges::Seen now = moved.now();
         next = next_poses.update(narrow.parts().executor(), bodies, moved);
-        if (moved.now() != now) forget_boxes();
-        for (const BodySlot slot : moved.list()) mark_box(slot);
+        if (moved.now() != now) finder.forget();
+        for (const BodySlot slot : moved.list()) finder.mark(slot);
     }
 
     void end_step() {
@@ -327,12 +264,10 @@ struct Scene::State {
     }
 
     void trim() {
-        world.trim();
-        broad_phase.trim();
-        box_changes.trim();
+        finder.trim();
         pairs.trim();
         last_given.shrink_to_fit();
-        free_all(others, given_pairs, sorted, sorter, columns);
+        free_all(given_pairs, sorted, sorter, columns);
     }
 
     // Frees memory once less than a quarter of it is in use.
@@ -340,38 +275,26 @@ struct Scene::State {
         if (slots.end() >= bodies.size()) return;
         bodies.resize(slots.end());
         user_data.resize(slots.end());
-        filters.resize(slots.end());
         if (bodies.capacity() <= 4 * bodies.size() + 1024) return;
         bodies.shrink_to_fit();
         user_data.shrink_to_fit();
-        filters.shrink_to_fit();
         moved.cut(slots.end());
-        world.cut(slots.end());
-        box_changes.cut(slots.end());
-        unlisted.cut(slots.end());
+        finder.cut(slots.end());
     }
 
     NarrowPhase narrow;
     BodySlots slots;
-    std::vector<PlacedBody> bodies;               ///< by slot; without a shape once removed
-    std::vector<std::uint64_t> user_data;         ///< by slot
-    std::vector<BroadPhaseInput::Filter> filters; ///< by slot
+    std::vector<PlacedBody> bodies;       ///< by slot; without a shape once removed
+    std::vector<std::uint64_t> user_data; ///< by slot
     SlotChanges moved;
     SlotChanges::Seen stepped = 0; ///< the last step that found contacts
     SlotChanges::Seen placed = 0;  ///< what place_bodies() has seen
     NextPoses next_poses;
     std::span<const Pose> next; ///< of the last step; empty without speculative contacts
-    WorldBoxes world;
-    std::mutex refreshing; ///< world
-    BoxChanges box_changes;
-    BroadPhase broad_phase;
+    PairFinder finder;
     OpenPairs pairs;
-    SlotChanges unlisted;         ///< bodies whose box or filter may be another than when the pairs were found
-    SlotChanges::Seen listed = 0; ///< when that was; 0: the pairs are others
-    float listed_reach = 0;       ///< WorldBoxes::reach() then
-    std::optional<std::size_t> listing_part; ///< the part whose device found the pairs
-    std::vector<BodySlot> others;            ///< of find_pairs_on_host()
-    std::vector<Pair> named;                 ///< by id, if names_stand
+    std::mutex refreshing;   ///< what is brought up to date between two steps, by several threads at once
+    std::vector<Pair> named; ///< by id, if names_stand
     bool names_stand = false;
     std::vector<Pair> last_given; ///< of read_pairs()
     bool given_stand = false;     ///< those are open, and no body of theirs has been removed
@@ -402,17 +325,13 @@ BodyId Scene::add(std::shared_ptr<const Shape> shape, const Pose& pose) {
     if (slot >= s.bodies.size()) {
         s.bodies.resize(slot + std::size_t{1});
         s.user_data.resize(slot + std::size_t{1});
-        s.filters.resize(slot + std::size_t{1});
     }
     s.moved.make_room(slot + std::size_t{1});
-    s.world.make_room(slot + std::size_t{1});
-    s.box_changes.make_room(slot + std::size_t{1});
-    s.unlisted.make_room(slot + std::size_t{1});
+    s.finder.make_room(slot + std::size_t{1});
     s.pack_shapes(); // without a step in between they would pile up
     s.narrow.parts().add_shape(shape);
     s.user_data[slot] = 0;
-    s.filters[slot] = {};
-    s.world.add_shape(*shape);
+    s.finder.add_shape(*shape);
     s.mark(slot);
     s.bodies[slot] = {shape.get(), s.narrow.parts().index_of(shape.get()), id.generation, pose, pose, pose};
     return s.slots.give();
@@ -421,13 +340,12 @@ BodyId Scene::add(std::shared_ptr<const Shape> shape, const Pose& pose) {
 void Scene::remove(BodyId body) {
     State& s = *state_;
     PlacedBody& gone = s.existing(body, "Scene::remove");
-    s.world.remove_shape(*gone.shape);
+    s.finder.remove_body(body.slot, *gone.shape);
     s.narrow.parts().remove_shape(gone.shape);
     s.met_shapes.erase(gone.shape); // its address may be another's soon
     gone.shape = nullptr;
     s.mark(body.slot);
     s.pairs.close_all_of(body.slot);
-    s.listing_part.reset(); // its list has these pairs still
     s.given_stand = s.names_stand = false;
     s.slots.take_back(body.slot);
     s.cut_to_slots();
@@ -513,10 +431,7 @@ std::uint64_t Scene::user_data(BodyId body) const {
 }
 void Scene::set_filter(BodyId body, std::uint32_t groups, std::uint32_t mask) {
     state_->existing(body, "Scene::set_filter");
-    const BroadPhaseInput::Filter filter{groups, mask};
-    if (std::exchange(state_->filters[body.slot], filter) == filter) return;
-    state_->box_changes.mark(body.slot);
-    state_->unlisted.mark(body.slot);
+    state_->finder.set_filter(body.slot, {groups, mask});
 }
 
 bool Scene::has(BodyId body) const noexcept {
@@ -544,7 +459,8 @@ std::span<const Contact> Scene::find_contacts() {
     const FloatEnvironment environment;
     const auto start = std::chrono::steady_clock::now();
     state_->all_or_nothing([&] {
-        state_->find_pairs();
+        state_->given_stand = false;
+        state_->finder.find(state_->narrow, state_->bodies, state_->next, state_->pairs);
         return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
     });
     return contacts();
@@ -598,11 +514,11 @@ std::string Scene::device_choice() const {
 void Scene::visit_near(const std::function<double(const Vec3& low, const Vec3& high)>& away,
                        const std::function<double()>& farthest, const std::function<void(BodyId)>& visit) const {
     State& s = *state_;
-    s.refresh_boxes();
-    const double by = 2 * s.world.rounding();
+    const WorldBoxes& world = s.up_to_date_boxes();
+    const double by = 2 * world.rounding();
     const Vec3 more{by, by, by};
-    s.world.tree().visit([&](const Box& box) { return away(box.low - more, box.high + more); }, farthest,
-                         [&](BodySlot slot) { visit(s.slots.id_in(slot)); });
+    world.tree().visit([&](const Box& box) { return away(box.low - more, box.high + more); }, farthest,
+                       [&](BodySlot slot) { visit(s.slots.id_in(slot)); });
 }
 std::optional<Distance> Scene::distance(BodyId a, BodyId b, double max) const {
     const PlacedBody& first = state_->existing(a, "Scene::distance");
