@@ -247,7 +247,8 @@ void NarrowPhase::open_other() {
 // A part that fails here has failed before the step: its pairs are new to the others.
 bool NarrowPhase::move_pairs(const Balance::Move& move, std::span<const PlacedBody> bodies, StepStats& stats) {
     const auto start = Clock::now();
-    auto [moving, share] = choose_moving(assignment_.all_on(move.from), contacts_.all(), move.share);
+    MovingPairs chosen = choose_moving(assignment_.all_on(move.from), contacts_.all(), move.share);
+    PairList& moving = chosen.pairs;
     std::vector<std::byte> state;
     auto failed = parts_.only(move.from, [&] { state = parts_[move.from].export_state(bodies, moving); });
     if (failed.empty()) {
@@ -263,7 +264,7 @@ bool NarrowPhase::move_pairs(const Balance::Move& move, std::span<const PlacedBo
         stats.details.pairs_moved += moving.size();
         stats.details.bytes_moved += state.size();
         const double ms = milliseconds_since(start);
-        balance_.record_move({move.from, move.to, share}, ms);
+        balance_.record_move({move.from, move.to, chosen.share}, ms);
         if (choice_) choice_->record_move(ms);
     } else {
         give_away(failed, stats);

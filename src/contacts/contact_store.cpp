@@ -145,7 +145,7 @@ void ContactStore::replace_all(Executor& executor, std::vector<Contact>& found) 
         executor, [&](std::size_t i) { return pair_at(i) == pair_at(i - 1); },
         [&](std::uint32_t slice, std::size_t begin, std::size_t end) {
             const auto old = beside(all(), begin, end, found.size(), pair_at, number_of_pair);
-            const auto first = static_cast<std::size_t>(old.begin() - all().begin());
+            const auto first = static_cast<std::size_t>(old.data() - all().data());
             compare({first, first + old.size()}, std::span(found).subspan(begin, end - begin), slices[slice]);
         });
     found.swap(*next_);
@@ -168,14 +168,15 @@ void ContactStore::list_units(Executor& executor, std::span<const SlotPair> pair
         executor, [](std::size_t) { return false; },
         [&](std::uint32_t s, std::size_t begin, std::size_t end) {
             Slice& slice = slices[s];
+            const std::span<const Contact> all_found = found;
             const auto own = beside(
-                found, begin, end, pairs.size(), [&](std::size_t i) { return pairs[i]; }, pair_of);
+                all_found, begin, end, pairs.size(), [&](std::size_t i) { return pairs[i]; }, pair_of);
             auto at = own.begin();
             for (const SlotPair& pair : pairs.subspan(begin, end - begin)) {
                 const auto first = at;
                 while (at != own.end() && pair_of(*at) == pair) ++at;
-                const Range old = range_of(pair), now{static_cast<std::size_t>(first - found.begin()),
-                                                      static_cast<std::size_t>(at - found.begin())};
+                const Range old = range_of(pair), now{static_cast<std::size_t>(first - all_found.begin()),
+                                                      static_cast<std::size_t>(at - all_found.begin())};
                 if (old.size() == 0 && now.size() == 0) continue;
                 compare(old, std::span(found).subspan(now.begin, now.size()), slice);
                 slice.units.push_back({old, now, 0});

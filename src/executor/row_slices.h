@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <ranges>
+#include <span>
 
 namespace raycontact {
 
@@ -47,11 +47,14 @@ struct RowSlices {
 
 /// What of another sorted list goes with the elements [begin, end) of one of `size`: what is not before the key of the
 /// first, and before that of the first behind them. All of it goes with one slice or another. key(i): of an element.
-template <class List, class Key, class Projection = std::identity>
-auto beside(const List& list, std::size_t begin, std::size_t end, std::size_t size, Key&& key,
-            Projection projection = {}) {
-    const auto at = [&](std::size_t i) { return std::ranges::lower_bound(list, key(i), {}, projection); };
-    return std::ranges::subrange(begin == 0 ? list.begin() : at(begin), end == size ? list.end() : at(end));
+template <class T, class Key, class Projection = std::identity>
+std::span<const T> beside(std::span<const T> list, std::size_t begin, std::size_t end, std::size_t size, Key&& key,
+                          Projection projection = {}) {
+    const auto at = [&](std::size_t i) {
+        return static_cast<std::size_t>(std::ranges::lower_bound(list, key(i), {}, projection) - list.begin());
+    };
+    const std::size_t first = begin == 0 ? 0 : at(begin);
+    return list.subspan(first, (end == size ? list.size() : at(end)) - first);
 }
 
 } // namespace raycontact

@@ -208,7 +208,7 @@ void OpenPairs::compare(const PairList& old_list, std::span<const SlotPair> pair
     std::size_t now = s * slice_size;
     const std::size_t end = std::min(pairs.size(), now + slice_size);
     const auto before = beside(olds, now, end, pairs.size(), [&](std::size_t i) { return pairs[i]; });
-    auto old = static_cast<std::size_t>(before.begin() - olds.begin());
+    auto old = static_cast<std::size_t>(before.data() - olds.data());
     const std::size_t old_end = old + before.size();
     while (now < end || old < old_end) {
         // Most pairs stay, in runs.

@@ -14,7 +14,7 @@ namespace raycontact {
 struct OpenPair {
     SlotPair pair;
     std::uint32_t slot;
-    auto operator<=>(const OpenPair&) const = default;
+    auto operator<=>(const OpenPair&) const = default; // NOLINT(modernize-use-nullptr): of clang-tidy 14
 };
 
 /// Pairs in order, and their slots.
