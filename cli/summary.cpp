@@ -40,7 +40,6 @@ constexpr Count counts[] = {
     {"contacts_lost", &StepStats::contacts_lost},
     {"contacts_speculative", &StepStats::contacts_speculative},
     {"contacts_reduced", &StepStats::contacts_reduced},
-    {"contacts_merged", &StepDetails::contacts_merged},
     {"pairs_moved", &StepDetails::pairs_moved},
     {"bytes_moved", &StepDetails::bytes_moved},
     {"devices_lost", &StepStats::devices_lost},

@@ -102,8 +102,8 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, const SlotChanges& mo
     stats.broad_ms = broad_ms;
     prepare();
     try {
-        if (const auto lost = parts_.take_lost(); !lost.empty()) give_away(lost, stats);
         assignment_.assign(pairs, balance_);
+        if (const auto lost = parts_.take_lost(); !lost.empty()) give_away(lost, stats);
         if (choice_) choose_device(bodies, stats);
         for (std::size_t i = 0; i + 1 < parts_.size(); ++i) {
             const auto move = balance_.next_move();
@@ -117,8 +117,7 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, const SlotChanges& mo
         std::vector<Contact>& found = merge();
         Executor& executor = parts_.executor(); // of a part that is left
         const ContactStore::Asked asked{!few_, asked_.pairs, pairs.closed()};
-        reducer_.run(executor, settings_, bodies, contacts_, found);
-        stats.details.contacts_merged = reducer_.merged();
+        reducer_.run(executor, settings_, bodies, {contacts_, left_out_, moved.is_next(seen_)}, found);
         contacts_.replace(executor, asked, found);
         if (!left_out_.all().empty() || !reducer_.left_out().empty())
             left_out_.replace(executor, asked, reducer_.left_out());
@@ -151,8 +150,7 @@ void NarrowPhase::rest(StepStats& stats) {
     stats.contacts_new = stats.contacts_lost = stats.devices_lost = 0;
     stats.warnings.clear();
     StepDetails& details = stats.details;
-    details = {
-        .ray_length = details.ray_length, .contacts_merged = details.contacts_merged, .work = std::move(details.work)};
+    details = {.ray_length = details.ray_length, .work = std::move(details.work)};
     for (DeviceWork& work : details.work) work = {.device = std::move(work.device), .pairs = work.pairs};
     stats.narrow_ms = milliseconds_since(start);
 }
@@ -173,7 +171,7 @@ void NarrowPhase::trim(std::uint64_t pair_bytes) {
     for (std::size_t i = 0; i < parts_.size(); ++i)
         if (parts_.has(i)) parts_[i].trim();
     for (Found& found : found_) found.contacts.shrink_to_fit();
-    free_all(merged_);
+    free_all(merged_, asked_);
     reducer_.trim();
     contacts_.trim();
     left_out_.trim();
@@ -295,7 +293,6 @@ std::vector<Contact>& NarrowPhase::merge() {
         const std::vector<Contact>& own = found_[part].contacts;
         const auto belongs = [&](std::size_t i) { return pair_of(own[i]) == pair_of(own[i - 1]); };
         RowSlices{own.size()}.each_row(parts_.executor(), belongs, [&](std::size_t begin, std::size_t end) {
-            if (begin == end) return;
             std::size_t to = begin;
             for (std::size_t other = 0; other < found_.size(); ++other) {
                 const std::vector<Contact>& others = found_[other].contacts;

@@ -45,7 +45,6 @@ void PairFinder::trim() {
 void PairFinder::remove_body(BodySlot body, const Shape& shape) {
     world_.remove_shape(shape);
     filters_[body] = {};
-    listing_part_.reset(); // its list has these pairs still
     mark(body);
 }
 

@@ -21,10 +21,9 @@
 #include <atomic>
 #include <chrono>
 #include <exception>
-#include <limits>
+#include <map>
 #include <memory>
 #include <mutex>
-#include <unordered_map>
 
 namespace raycontact {
 
@@ -121,19 +120,25 @@ struct Scene::State {
     // again, as in a search of pairs that are asked about once. Without memory or threads for it, they come without.
     void want_shapes() {
         if (narrow.parts().plain_shapes() == 0) return met_shapes.clear();
-        if (steps_met > 0 && pairs.slots().count() > 0 && pairs.count_kept() == 0) return;
-        ++steps_met;
+        const bool returns = pairs.count_kept() > 0;
         try {
-            for (auto& [shape, first] : met_shapes) {
-                if (first >= steps_met) continue; // wanted already
-                preparer.want(shape->shared_from_this());
-                first = wanted;
+            for (auto met = met_shapes.begin(); met != met_shapes.end();) {
+                auto& [weak, wanted] = *met;
+                std::shared_ptr<const Shape> shape = weak.lock();
+                if (!shape || (!wanted && !returns)) {
+                    met = met_shapes.erase(met);
+                    continue;
+                }
+                if (!wanted) preparer.want(std::move(shape));
+                wanted = true;
+                ++met;
             }
             for (const std::uint32_t pair : pairs.slots().changes().list()) {
                 if (!pairs.slots().is_open(pair)) continue;
                 const auto [a, b] = pairs.slots()[pair];
                 for (const BodySlot slot : {a, b})
-                    if (!bodies[slot].shape->is_prepared()) met_shapes.try_emplace(bodies[slot].shape, steps_met);
+                    if (!bodies[slot].shape->is_prepared())
+                        met_shapes.try_emplace(bodies[slot].shape->weak_from_this(), false);
             }
         } catch (const std::exception&) {
         }
@@ -184,13 +189,13 @@ struct Scene::State {
             given_pairs.swap(sorted);
         }
         given_pairs.erase(std::unique(given_pairs.begin(), given_pairs.end()), given_pairs.end());
+        given_stand = false; // until set_pairs()
         last_given.assign(given.begin(), given.end());
         return true;
     }
 
     void set_pairs() {
         finder.drop_list();
-        given_stand = false;
         pairs.set_all(narrow.parts().executor(), given_pairs);
         given_stand = true;
     }
@@ -228,9 +233,7 @@ struct Scene::State {
     void look_ahead() {
         next = {};
         if (!narrow.settings().is_speculative()) return;
-        const SlotChanges::Seen now = moved.now();
         next = next_poses.update(narrow.parts().executor(), bodies, moved);
-        if (moved.now() != now) finder.forget();
         for (const BodySlot slot : moved.list()) finder.mark(slot);
     }
 
@@ -302,10 +305,8 @@ struct Scene::State {
     PairSorter<SlotPair> sorter;
     ContactColumnWriter columns;
     StepStats stats;
-    static constexpr std::uint64_t wanted = std::numeric_limits<std::uint64_t>::max();
-    std::unordered_map<const Shape*, std::uint64_t> met_shapes; ///< those not prepared: the step that first met them
-    std::uint64_t steps_met = 0;
-    Preparer preparer; ///< last: it ends first
+    std::map<std::weak_ptr<const Shape>, bool, std::owner_less<>> met_shapes; ///< not prepared; whether it is wanted
+    Preparer preparer;                                                        ///< last: it ends first
 };
 
 Scene::Scene(const Settings& settings) {
@@ -342,7 +343,6 @@ void Scene::remove(BodyId body) {
     PlacedBody& gone = s.existing(body, "Scene::remove");
     s.finder.remove_body(body.slot, *gone.shape);
     s.narrow.parts().remove_shape(gone.shape);
-    s.met_shapes.erase(gone.shape); // its address may be another's soon
     gone.shape = nullptr;
     s.mark(body.slot);
     s.pairs.close_all_of(body.slot);

@@ -28,7 +28,6 @@ struct StepDetails {
     std::uint64_t walks_lost = 0;        ///< of these, how many ended nowhere
     std::uint64_t walk_casts = 0;        ///< of those, how many were cast in full instead
     std::uint64_t predictions = 0;       ///< vertices followed without contact (predictive)
-    std::uint64_t contacts_merged = 0;   ///< of StepStats::contacts_reduced, those that say what one chosen says
     std::uint64_t pairs_moved = 0;       ///< from one device to another
     std::uint64_t bytes_moved = 0;       ///< of what was kept for them
     std::vector<DeviceWork> work;        ///< one entry a device, those lost included

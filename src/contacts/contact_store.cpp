@@ -51,8 +51,8 @@ void ContactStore::prepare() {
 }
 
 void ContactStore::clear() noexcept {
-    next_->clear();
-    contacts_.swap(next_);
+    if (is_held()) contacts_.swap(next_);
+    contacts_->clear();
     blocks_.clear();
     maybe_new_.clear();
     lost_.clear();

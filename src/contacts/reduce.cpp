@@ -15,11 +15,35 @@ namespace {
 constexpr double patch_cosine = 0.8;
 constexpr double one_place = 0.01; // of the smaller body's size
 
-constexpr std::uint32_t not_chosen = std::numeric_limits<std::uint32_t>::max(), merged_away = not_chosen - 1;
+constexpr std::uint32_t not_chosen = std::numeric_limits<std::uint32_t>::max();
 
 ManifoldPoint point_of(const Contact& contact, double place) {
     return {0.5 * (contact.point_a + contact.point_b), contact.normal, double(contact.depth),
             std::numeric_limits<double>::infinity(), place};
+}
+
+bool is_same(const Contact& a, const Contact& b) {
+    return order_of(a) == order_of(b) && a.body_a == b.body_a && a.body_b == b.body_b && a.normal == b.normal
+           && a.depth == b.depth && a.ray_length == b.ray_length && a.weight == b.weight && a.point_a == b.point_a
+           && a.point_b == b.point_b;
+}
+
+// Gives a pair's contacts the choice of the last step, if they are what the pair had.
+bool choose_as_before(const ContactReducer::Last& last, std::span<const Contact> contacts,
+                      std::span<std::uint32_t> ranks) {
+    if (!last.has_settings) return false;
+    const SlotPair pair = pair_of(contacts.front());
+    const std::span<const Contact> kept = last.kept.of(pair), left_out = last.left_out.of(pair);
+    if (kept.size() + left_out.size() != contacts.size()) return false;
+    auto stays = kept.begin();
+    auto goes = left_out.begin();
+    for (std::size_t i = 0; i < contacts.size(); ++i) {
+        const bool chosen = stays != kept.end() && is_same(*stays, contacts[i]);
+        if (!chosen && (goes == left_out.end() || !is_same(*goes, contacts[i]))) return false;
+        ++(chosen ? stays : goes);
+        ranks[i] = chosen ? 0 : not_chosen;
+    }
+    return true;
 }
 
 } // namespace
@@ -50,12 +74,6 @@ void ContactReducer::rank(Work& work, std::span<const PlacedBody> bodies, const 
     for (std::size_t turn = 0; turn < most; ++turn)
         for (const auto& chosen : work.chosen)
             if (turn < chosen.size()) ranks[chosen[turn]] = rank++;
-    for (std::size_t p = 0; p < work.patches.size(); ++p)
-        for (const std::uint32_t i : work.patches[p].points)
-            if (ranks[i] == not_chosen && std::ranges::any_of(work.chosen[p], [&](std::uint32_t kept) {
-                    return say_the_same(work.points[i], work.points[kept]);
-                }))
-                ranks[i] = merged_away;
 }
 
 // First ranks, then depths, then the order of the contacts say who stays.
@@ -64,7 +82,7 @@ void ContactReducer::keep_budget(std::uint64_t most, std::span<const Contact> co
     rest_.clear();
     for (std::uint32_t i = 0; i < contacts.size(); ++i) {
         if (ranks_[i] == 0) room -= std::min<std::uint64_t>(room, 1);
-        if (ranks_[i] != 0 && ranks_[i] < merged_away) rest_.push_back(i);
+        if (ranks_[i] != 0 && ranks_[i] != not_chosen) rest_.push_back(i);
     }
     if (rest_.size() <= room) return;
     const auto first_out = rest_.begin() + static_cast<std::ptrdiff_t>(room);
@@ -74,23 +92,26 @@ void ContactReducer::keep_budget(std::uint64_t most, std::span<const Contact> co
 }
 
 void ContactReducer::run(Executor& executor, const Settings& settings, std::span<const PlacedBody> bodies,
-                         const ContactStore& last, std::vector<Contact>& contacts) {
+                         const Last& last, std::vector<Contact>& contacts) {
     clear();
     if (settings.max_contacts_per_pair == 0 && settings.max_contacts == 0) return;
     ranks_.resize(contacts.size());
     const RowSlices rows{contacts.size(), 256};
     const auto belongs = [&](std::size_t i) { return pair_of(contacts[i]) == pair_of(contacts[i - 1]); };
     const std::uint32_t most_of_pair =
-        settings.max_contacts_per_pair == 0 ? merged_away : settings.max_contacts_per_pair;
+        settings.max_contacts_per_pair == 0 ? not_chosen : settings.max_contacts_per_pair;
     rows.each(executor, belongs, [&](std::uint32_t, std::size_t begin, std::size_t end) {
         Work work;
         for (std::size_t next = begin; begin < end; begin = next) {
             while (++next < end && belongs(next)) {
             }
             const std::span ranks(ranks_.begin() + std::ptrdiff_t(begin), next - begin);
-            rank(work, bodies, last, std::span<const Contact>(contacts).subspan(begin, next - begin), ranks);
+            const auto own = std::span<const Contact>(contacts).subspan(begin, next - begin);
+            // A budget is shared out by ranks.
+            if (settings.max_contacts == 0 && choose_as_before(last, own, ranks)) continue;
+            rank(work, bodies, last.kept, own, ranks);
             for (std::uint32_t& one : ranks)
-                if (one >= most_of_pair && one < merged_away) one = not_chosen;
+                if (one >= most_of_pair) one = not_chosen;
         }
     });
     if (settings.max_contacts != 0) keep_budget(settings.max_contacts, contacts);
@@ -103,22 +124,20 @@ void ContactReducer::divide(Executor& executor, const RowSlices& rows, std::vect
     slices_.assign(rows.count(), {});
     rows.each(executor, alone, [&](std::uint32_t slice, std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            ++(ranks_[i] < merged_away ? slices_[slice].kept : slices_[slice].left_out);
-            slices_[slice].merged += ranks_[i] == merged_away ? 1 : 0;
+            ++(ranks_[i] != not_chosen ? slices_[slice].kept : slices_[slice].left_out);
         }
     });
     std::size_t kept = 0, left_out = 0;
     for (Slice& slice : slices_) {
         kept += std::exchange(slice.kept, kept);
         left_out += std::exchange(slice.left_out, left_out);
-        merged_ += slice.merged;
     }
     kept_.resize(kept);
     left_out_.resize(left_out);
     rows.each(executor, alone, [&](std::uint32_t s, std::size_t begin, std::size_t end) {
         Slice& slice = slices_[s];
         for (std::size_t i = begin; i < end; ++i)
-            (ranks_[i] < merged_away ? kept_[slice.kept++] : left_out_[slice.left_out++]) = contacts[i];
+            (ranks_[i] != not_chosen ? kept_[slice.kept++] : left_out_[slice.left_out++]) = contacts[i];
     });
     contacts.swap(kept_);
 }
@@ -130,7 +149,6 @@ void ContactReducer::trim() {
 
 void ContactReducer::clear() {
     left_out_.clear();
-    merged_ = 0;
 }
 
 } // namespace raycontact

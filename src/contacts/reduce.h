@@ -15,16 +15,19 @@
 namespace raycontact {
 
 /// Leaves the contacts that stand for all, where the settings ask for fewer (docs/conventions.md, Fewer contacts). Each
-/// pair is looked at alone, its contacts in their order, so no device and no thread changes what stays.
+/// pair is looked at alone, its contacts in their order, so no device and no thread changes what stays. One that has
+/// what it had keeps its choice, so neither does it matter whether a step asked about it.
 class ContactReducer {
 public:
-    /// contacts: of some pairs, all of each, sorted; last: of the last step, for the points that were there. Contacts
-    /// that stay keep their order.
-    void run(Executor& executor, const Settings& settings, std::span<const PlacedBody> bodies, const ContactStore& last,
+    /// The contacts of the last step.
+    struct Last {
+        const ContactStore &kept, &left_out;
+        bool has_settings; ///< they were chosen in the step before, by these settings
+    };
+    /// contacts: of some pairs, all of each, sorted. Those that stay keep their order.
+    void run(Executor& executor, const Settings& settings, std::span<const PlacedBody> bodies, const Last& last,
              std::vector<Contact>& contacts);
-    /// Of the last run: those that say what another says, and those left out.
-    std::uint64_t merged() const { return merged_; }
-    /// Sorted; may be taken.
+    /// Of the last run; sorted; may be taken.
     std::vector<Contact>& left_out() { return left_out_; }
     void clear();
     void trim();
@@ -43,13 +46,11 @@ private:
     /// What stays of some pairs in a row, and what does not.
     struct Slice {
         std::size_t kept, left_out;
-        std::uint64_t merged;
     };
-    std::vector<std::uint32_t> ranks_; ///< of each contact in its pair: 0 for the deepest; a name below for others
+    std::vector<std::uint32_t> ranks_; ///< of each contact in its pair: 0 for the deepest; not_chosen for others
     std::vector<std::uint32_t> rest_;  ///< contacts that the budget may leave out
     std::vector<Slice> slices_;
     std::vector<Contact> kept_, left_out_;
-    std::uint64_t merged_ = 0;
 };
 
 } // namespace raycontact

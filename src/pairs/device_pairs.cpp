@@ -30,7 +30,6 @@ void DevicePairs::list_moved(const Update& update, Pose PlacedBody::*pose, Placi
 }
 
 void DevicePairs::place(const Update& update, bool next) {
-    if (update.open.count() >= NONE / 2) throw InputError("more than 2^31 pairs in one step; give fewer");
     changed_.clear();
     const std::span<const kernels::PairBodies> pairs = update.open.bodies();
     const SlotChanges& changes = update.open.changes();

@@ -31,7 +31,6 @@ private:
         Array<kernels::DirectedPair> placed;
     };
     void list_moved(const Update& update, Pose PlacedBody::*pose, Placing& at);
-    void list_changes(const Update& update);
     void place(const Update& update, Placing& at);
     void place_on_host(const Update& update, Placing& at);
 

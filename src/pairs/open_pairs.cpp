@@ -5,6 +5,8 @@
 #include "executor/row_slices.h"
 #include "free_all.h"
 
+#include <raycontact/error.h>
+
 #include <algorithm>
 
 namespace raycontact {
@@ -105,10 +107,14 @@ void OpenPairs::forget() noexcept {
 void OpenPairs::trim() {
     if (!has_all_) free_all(all_);
     free_all(of_bodies_, slices_, found_, lists_, sorted_, sorter_, next_slots_);
-    closed_.shrink_to_fit();
+    std::vector<SlotPair> closed; // with room for all, so that close() cannot fail
+    closed.reserve(closed_.size() + slots_.count());
+    closed.assign(closed_.begin(), closed_.end());
+    closed_.swap(closed);
 }
 
 std::uint32_t OpenPairs::open(const SlotPair& pair) {
+    if (slots_.count() >= NONE / 2) throw InputError("more than 2^31 pairs in one step; give fewer");
     if (heads_.size() <= pair.second) heads_.resize(pair.second + std::size_t{1}, none);
     // So that close() cannot fail.
     if (const std::size_t room = closed_.size() + slots_.count() + 1; closed_.capacity() < room)

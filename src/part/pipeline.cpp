@@ -49,6 +49,7 @@ void Pipeline::forget() {
     pairs_.clear();
     batch_.sums = {};
     batch_.totals = {};
+    margins_seen_ = 0;
 }
 
 void Pipeline::trim() {
@@ -108,7 +109,7 @@ void Pipeline::begin(const Update& update) {
     if (casts_points_) cast_near(update, points_);
 }
 
-// Of slots without a pair they mean nothing. What changes a margin makes all begin anew.
+// Of slots without a pair they mean nothing. What changes a margin makes all begin anew (forget).
 void Pipeline::set_margins(const Update& update) {
     const std::size_t before = margins_.size();
     margins_.resize(2 * std::size_t{update.open.end()});

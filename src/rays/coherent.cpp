@@ -328,6 +328,8 @@ void CoherentRays::list_kept_rays(Device& device, std::span<const PlacedBody> bo
     for (std::uint32_t slot = 0; slot < open.end(); ++slot) {
         if (!table_.knows(open, slot)) continue;
         const SlotPair pair = open[slot];
+        // A body may be gone since, and its pairs close in the next step.
+        if (bodies[pair.first].shape == nullptr || bodies[pair.second].shape == nullptr) continue;
         for (std::uint32_t d = 0; d < 2; ++d) {
             const PlacedBody& source = bodies[d == 0 ? pair.first : pair.second];
             const auto& blocks = source.shape->data().vertex_blocks;

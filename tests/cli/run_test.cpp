@@ -61,8 +61,7 @@ TEST_F(Run, HasItsKeys) {
                             "cast_lost_walks",
                             "max_contacts_per_pair",
                             "max_contacts",
-                            "contacts_reduced",
-                            "contacts_merged"}) {
+                            "contacts_reduced"}) {
         EXPECT_TRUE(run_log.contains(key)) << key;
     }
     for (const char* key : {"step_ms", "narrow_ms"}) {

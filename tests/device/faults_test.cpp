@@ -333,6 +333,22 @@ TEST(Faults, InAddingAShape) {
     }
 }
 
+// The pairs that the lost one had are those of the step before, and few of the slots are in use by now.
+TEST(Faults, BeforeAStepThatGivesPairsOtherSlots) {
+    MovingCrowd crowd(100, 0.8);
+    std::vector<SlotPair> all;
+    for (BodySlot a = 0; a < 100; ++a)
+        for (BodySlot b = a + 1; b < 100; ++b) all.emplace_back(a, b);
+    crowd.pairs.resize(4);
+    Rig rig(crowd, Method::standard, 2);
+    rig.step(crowd, all);
+    rig.narrow.parts().before_step(1, [] { throw DeviceError("lost"); });
+    rig.pairs.set_all(rig.narrow.parts().executor(), crowd.pairs);
+    ASSERT_TRUE(rig.pairs.compact(rig.narrow.parts().executor()));
+    EXPECT_TRUE(same(rig.step(crowd), Reference(crowd, Method::standard).step(crowd, {})));
+    EXPECT_EQ(rig.stats.devices_lost, 1u);
+}
+
 // ---- several devices without a fault
 
 // The load is uneven for some steps, so that pairs move. In step `faulty`, device `device` fails at call `at`.

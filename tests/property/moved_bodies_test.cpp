@@ -3,13 +3,16 @@
 // scene finds that is new, has the same bodies and knows nothing of earlier steps.
 #include "property/crowds.h"
 #include "property/shapes.h"
+#include "reference/meshes.h"
 #include "reference/vector.h"
 
 #include <raycontact/scene.h>
 
 #include <algorithm>
+#include <cmath>
 #include <gtest/gtest.h>
 #include <map>
+#include <numbers>
 #include <set>
 
 namespace raycontact::reference {
@@ -209,6 +212,32 @@ TEST(moved_bodies, a_step_in_which_nothing_moved_has_the_last_contacts) {
     scene.set_pose(bodies[2], {});
     held();
     EXPECT_GT(scene.stats().details.rays_cast, 0u);
+}
+
+// Of a pair that was open before, too. Two cubes, edge to edge, 3 % of a side apart.
+TEST(moved_bodies, a_margin_that_changes_holds_from_the_next_step) {
+    const auto cube = Shape::make(prepare_mesh(box_mesh({0.5, 0.5, 0.5})));
+    const Pose here = pose_from_quaternion({}, std::cos(std::numbers::pi / 8), 0, 0, std::sin(std::numbers::pi / 8));
+    Pose there = here;
+    there.translation = {1.03 / std::sqrt(2.0), 1.03 / std::sqrt(2.0), 0};
+    for (const Method method : {Method::certified, Method::standard, Method::iterative, Method::predictive})
+        for (const bool own : {false, true}) {
+            Settings settings;
+            settings.method = method;
+            settings.speculative_margin = 0.001;
+            Scene scene(settings);
+            const BodyId body = scene.add(cube, here);
+            scene.add(cube, there);
+            EXPECT_EQ(scene.find_contacts().size(), 0u);
+            ASSERT_EQ(scene.pairs().size(), 1u);
+            if (own) {
+                scene.set_speculative_margin(body, 0.1);
+            } else {
+                settings.speculative_margin = 0.1;
+                scene.set_settings(settings);
+            }
+            EXPECT_GT(scene.find_contacts().size(), 0u) << to_string(method) << own;
+        }
 }
 
 } // namespace

@@ -22,28 +22,43 @@ double distance(const Vec3& a, const Vec3& b) {
     return std::hypot(a.x - b.x, a.y - b.y, a.z - b.z);
 }
 
-// Steps a crowd; returns all predictions, step by step.
-std::vector<std::vector<Prediction>> predictions_of(const std::string& devices, Method method, std::uint64_t& counted) {
-    Settings settings;
-    settings.features = Features::vertices;
-    settings.method = method;
-    settings.execution.devices = devices;
-    Scene scene(settings);
-    std::vector<std::shared_ptr<const Shape>> shapes;
-    for (int i = 0; i < 3; ++i)
-        for (const auto& shape : crowd_shapes(Kind::concave, 1)) shapes.push_back(shape);
-    Random random(7);
-    const std::vector<Pose> homes = touching_poses(shapes, 0.9, random);
-    std::vector<Mover> movers;
-    std::vector<BodyId> bodies;
-    for (std::size_t i = 0; i < shapes.size(); ++i) {
-        movers.emplace_back(Course::drift, homes[i], 1.0, random);
-        bodies.push_back(scene.add(shapes[i], homes[i]));
+// A crowd that drifts.
+struct Drifting {
+    Drifting(const std::string& devices, Method method) : scene(settings_of(devices, method)) {
+        std::vector<std::shared_ptr<const Shape>> shapes;
+        for (int i = 0; i < 3; ++i)
+            for (const auto& shape : crowd_shapes(Kind::concave, 1)) shapes.push_back(shape);
+        const std::vector<Pose> homes = touching_poses(shapes, 0.9, random);
+        for (std::size_t i = 0; i < shapes.size(); ++i) {
+            movers.emplace_back(Course::drift, homes[i], 1.0, random);
+            bodies.push_back(scene.add(shapes[i], homes[i]));
+        }
     }
-    std::vector<std::vector<Prediction>> found;
-    for (int step = 0; step < 20; ++step) {
+    static Settings settings_of(const std::string& devices, Method method) {
+        Settings settings;
+        settings.features = Features::vertices;
+        settings.method = method;
+        settings.execution.devices = devices;
+        return settings;
+    }
+    void step() {
         for (std::size_t i = 0; i < bodies.size(); ++i) scene.set_pose(bodies[i], movers[i].next(random));
         scene.find_contacts();
+    }
+
+    Scene scene;
+    Random random{7};
+    std::vector<Mover> movers;
+    std::vector<BodyId> bodies;
+};
+
+// Returns all predictions, step by step.
+std::vector<std::vector<Prediction>> predictions_of(const std::string& devices, Method method, std::uint64_t& counted) {
+    Drifting crowd(devices, method);
+    Scene& scene = crowd.scene;
+    std::vector<std::vector<Prediction>> found;
+    for (int step = 0; step < 20; ++step) {
+        crowd.step();
         found.push_back(scene.predictions());
         EXPECT_EQ(found.back().size(), scene.stats().details.predictions) << "step " << step;
         counted += scene.stats().details.predictions;
@@ -115,6 +130,26 @@ TEST(Predictions, AreThoseThatAreCounted) {
     std::uint64_t counted = 0;
     predictions_of("cpu", Method::predictive, counted);
     EXPECT_GT(counted, 50u);
+}
+
+// Those of its pairs are gone, whatever the device.
+TEST(Predictions, LeaveOutABodyThatIsRemoved) {
+    std::size_t counts[2] = {};
+    for (const bool two : {false, true}) {
+        Drifting crowd(two ? "cpu/0,cpu/1" : "cpu", Method::predictive);
+        std::vector<Prediction> before;
+        while (before.empty()) {
+            crowd.step();
+            before = crowd.scene.predictions();
+        }
+        const BodyId body = before.front().body_a;
+        crowd.scene.remove(body);
+        std::erase_if(before, [&](const Prediction& p) { return p.body_a == body || p.body_b == body; });
+        const std::vector<Prediction> left = crowd.scene.predictions();
+        EXPECT_TRUE(std::ranges::equal(left, before, {}, key_of<Prediction>, key_of<Prediction>));
+        counts[two ? 1 : 0] = left.size();
+    }
+    EXPECT_EQ(counts[0], counts[1]);
 }
 
 TEST(Predictions, AreTheSameOnTwoDevices) {

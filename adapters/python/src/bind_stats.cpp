@@ -57,7 +57,6 @@ void bind_stats(nb::module_& m) {
         .def_ro("walks_lost", &StepDetails::walks_lost, "of these, how many ended nowhere")
         .def_ro("walk_casts", &StepDetails::walk_casts, "of those, how many were cast in full instead")
         .def_ro("predictions", &StepDetails::predictions, "vertices followed without contact")
-        .def_ro("contacts_merged", &StepDetails::contacts_merged, "left out, as one chosen says the same")
         .def_ro("pairs_moved", &StepDetails::pairs_moved, "from one device to another")
         .def_ro("bytes_moved", &StepDetails::bytes_moved, "of what was kept for them")
         .def_ro("work", &StepDetails::work, "a DeviceWork for each device");

@@ -124,9 +124,13 @@ void compare_steps(std::uint32_t bodies, std::uint32_t vertices, std::uint32_t m
     }
     EXPECT_GT(in_place, 1u);
     EXPECT_GT(moved, 1u);
+    const auto held = store.shared();
+    const std::size_t count = held->size();
     store.prepare();
     store.clear();
+    store.clear(); // as often as it may be
     EXPECT_TRUE(store.all().empty());
+    EXPECT_EQ(held->size(), count) << "what somebody holds stays";
     EXPECT_TRUE(store.of({0, 1}).empty());
 }
 

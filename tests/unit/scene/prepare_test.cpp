@@ -61,6 +61,26 @@ TEST(Prepare, ComesAfterASecondMeetingAndNotBefore) {
     }
 }
 
+// Its first step had no pair of the step before, and in none since has a pair opened.
+TEST(Prepare, ComesToAShapeThatTookThePlaceOfAnother) {
+    const auto floor = new_shape(), first = new_shape(), second = new_shape();
+    Scene scene;
+    const BodyId standing = scene.add(floor), going = scene.add(first, {.translation = {0.3, 0, 0}});
+    const BodyId coming = scene.add(second, {.translation = {100, 0, 0}});
+    const BodyId of_no_pair = scene.add(second, {.translation = {200, 0, 0}});
+    scene.find_contacts();
+    scene.set_pose(going, {.translation = {-100, 0, 0}});
+    scene.find_contacts();
+    scene.set_pose(coming, {.translation = {0.3, 0, 0}});
+    scene.find_contacts();
+    scene.remove(of_no_pair);
+    scene.set_pose(standing, {.translation = {0.001, 0, 0}});
+    scene.find_contacts();
+    wait_until_prepared(*second);
+    wait_until_prepared(*floor);
+    EXPECT_FALSE(first->is_prepared()) << "met in one step";
+}
+
 TEST(Prepare, MethodsThatFollowRaysDoSoFirst) {
     for (const Method method : {Method::iterative, Method::predictive}) {
         const auto a = new_shape(), b = new_shape();
