@@ -32,8 +32,9 @@ public:
     Grid(const Size& size, const std::shared_ptr<const Shape>& shape, double spacing) : scene_(settings(size)) {
         const auto side = static_cast<std::uint32_t>(std::ceil(std::cbrt(double(size.bodies))));
         for (std::uint32_t i = 0; i < size.bodies; ++i) {
+            const std::uint32_t x = i % side, y = i / side % side, z = i / side / side;
             Pose pose;
-            pose.translation = {spacing * (i % side), spacing * (i / side % side), spacing * (i / side / side)};
+            pose.translation = {spacing * x, spacing * y, spacing * z};
             bodies_.push_back(scene_.add(shape, pose));
             poses_.push_back(pose);
         }
