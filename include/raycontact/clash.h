@@ -39,9 +39,9 @@ RAYCONTACT_API const char* to_string(ClashKind kind);
 
 /// Two parts that clash.
 struct Clash {
-    std::size_t a = 0; ///< number of a part
-    std::size_t b = 0; ///< number of a later part
-    ClashKind kind = ClashKind::touching;
+    std::size_t a = 0;                    ///< number of a part
+    std::size_t b = 0;                    ///< number of a later part
+    ClashKind kind = ClashKind::touching; ///< how they clash
     /// Of the deepest contact, metres; 0: they touch; negative: minus the distance of parts that are near. None: no
     /// rule of contact gives one, as a part is open, intersects itself or winds the wrong way somewhere.
     std::optional<double> depth = 0;
@@ -50,7 +50,7 @@ struct Clash {
     Vec3 point_a; ///< of that contact, or the closest one: on the surface of a
     Vec3 point_b; ///< likewise on that of b
     Vec3 normal;  ///< of that contact, unit, from a to b; near: the way from point_a to point_b; else 0
-    std::size_t contacts = 0;
+    std::size_t contacts = 0; ///< how many the two have
     bool open_a = false; ///< a is not closed: nothing is inside it, and a depth says how far it reaches into b alone
     bool open_b = false; ///< likewise b
     /// About what both share, along the axes, right to some 1e-7 of the smaller part. Where one of them has no inside:

@@ -27,8 +27,8 @@ enum class ContactColumn {
 /// A column that is wanted, and where: contiguous, the contacts in their order (by the slots of their bodies, then by
 /// key).
 struct ContactOutput {
-    ContactColumn column;
-    UserMemory memory;
+    ContactColumn column;                    ///< which
+    UserMemory memory;                       ///< with room for all contacts
     NumberType points = NumberType::float64; ///< of point_a and point_b
 };
 

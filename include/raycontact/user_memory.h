@@ -16,6 +16,7 @@ namespace raycontact {
 /// for as long as it is used.
 class RAYCONTACT_API UserMemory {
 public:
+    /// Of the host: an array of the caller's.
     static UserMemory host(std::span<std::byte> bytes);
     /// Of a CUDA device: an address as cudaMalloc, torch, CuPy or Warp give it. It is read after what its stream was
     /// given before, and written before what the stream is given after. stream: a cudaStream_t or CUstream of the same
@@ -29,6 +30,7 @@ public:
     /// of another context, and where this version was built without OpenCL.
     static UserMemory opencl(void* queue, void* buffer, std::size_t bytes, std::size_t offset = 0);
 
+    /// Of the stretch.
     std::size_t bytes() const noexcept { return bytes_; }
 
     /// Copies the first bytes; returns when they are there. Throws InputError for more than there are, and
@@ -41,6 +43,7 @@ public:
 
     /// How one kind of memory is reached.
     class RAYCONTACT_HIDDEN Access;
+    /// Of the functions above.
     RAYCONTACT_HIDDEN UserMemory(std::shared_ptr<const Access> access, std::size_t bytes);
 
 private:
