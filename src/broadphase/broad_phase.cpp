@@ -97,7 +97,7 @@ void BroadPhase::test(Found& found, const Question& asked, std::uint32_t node, s
         for (; lanes != 0; lanes &= lanes - 1) {
             const BodySlot b =
                 tree.body(std::size_t{width} * other + static_cast<std::uint32_t>(std::countr_zero(lanes)));
-            if (asked.input.is_pair(a, b)) found.pairs.push_back(std::minmax(a, b));
+            if (asked.input.is_pair(a, b)) found.pairs.emplace_back(std::minmax(a, b));
         }
     }
 }
@@ -114,7 +114,7 @@ void BroadPhase::query(Found& found, const Question& asked, BodySlot body, std::
         }
         const BodySlot other = asked.tree.body(child);
         if (other == body || (other < body && is_changed_[other] != 0)) continue;
-        if (asked.input.is_pair(body, other)) found.pairs.push_back(std::minmax(body, other));
+        if (asked.input.is_pair(body, other)) found.pairs.emplace_back(std::minmax(body, other));
     }
 }
 

@@ -14,6 +14,7 @@ public:
         const std::string named = "memory of an OpenCL buffer: ";
         cl_context of_queue = nullptr, of_buffer = nullptr;
         std::size_t size = 0;
+        // NOLINTBEGIN(bugprone-sizeof-expression): a context is a handle
         if (queue == nullptr
             || clGetCommandQueueInfo(queue, CL_QUEUE_CONTEXT, sizeof of_queue, &of_queue, nullptr) != CL_SUCCESS)
             throw InputError(named + "the queue is none");
@@ -21,6 +22,7 @@ public:
             || clGetMemObjectInfo(buffer, CL_MEM_CONTEXT, sizeof of_buffer, &of_buffer, nullptr) != CL_SUCCESS
             || clGetMemObjectInfo(buffer, CL_MEM_SIZE, sizeof size, &size, nullptr) != CL_SUCCESS)
             throw InputError(named + "the buffer is none");
+        // NOLINTEND(bugprone-sizeof-expression)
         if (of_queue != of_buffer) throw InputError(named + "it is of another context than the queue");
         if (offset > size || bytes > size - offset)
             throw InputError(named + "it has " + std::to_string(size) + " bytes, not " + std::to_string(bytes)
