@@ -124,12 +124,12 @@ struct Scene::State {
         try {
             for (auto met = met_shapes.begin(); met != met_shapes.end();) {
                 auto& [weak, wanted] = *met;
-                std::shared_ptr<const Shape> shape = weak.lock();
+                const std::shared_ptr<const Shape> shape = weak.lock();
                 if (!shape || (!wanted && !returns)) {
                     met = met_shapes.erase(met);
                     continue;
                 }
-                if (!wanted) preparer.want(std::move(shape));
+                if (!wanted) preparer.want(shape);
                 wanted = true;
                 ++met;
             }

@@ -17,7 +17,7 @@ using cuda::StreamHandle;
 namespace {
 
 class UserMemoryOnCuda : public cuda_test::FakeMachine {
-protected:
+public:
     UserMemoryOnCuda() {
         driver().cuInit(0);
         context.emplace(0);
