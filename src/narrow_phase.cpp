@@ -68,7 +68,9 @@ void NarrowPhase::wake() {
     if (parts_.has(in_use_)) parts_[in_use_].executor().wake();
 }
 
-void NarrowPhase::drop_contacts() noexcept {
+void NarrowPhase::begin_anew() noexcept {
+    parts_.forget(); // what they kept may be wrong, and slots may get other bodies before the next step
+    assignment_.forget();
     contacts_.clear();
     left_out_.clear();
     seen_ = 0;
@@ -123,10 +125,8 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, const SlotChanges& mo
             left_out_.replace(executor, asked, reducer_.left_out());
         seen_ = moved.now();
     } catch (...) {
-        parts_.forget(); // the step failed half-way: what it kept may be wrong
-        assignment_.forget();
+        begin_anew();
         pairs.forget();
-        drop_contacts();
         throw;
     }
 

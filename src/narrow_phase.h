@@ -36,13 +36,13 @@ public:
 
     /// Of the last step.
     const ContactStore& contacts() const { return contacts_; }
-    /// Before a step, so that drop_contacts() cannot fail.
+    /// Before a step, so that begin_anew() cannot fail.
     void prepare() {
         contacts_.prepare();
         left_out_.prepare();
     }
     /// A step that failed has no contacts. Its pairs begin anew.
-    void drop_contacts() noexcept;
+    void begin_anew() noexcept;
 
     /// pairs: their changes are those since the last step. Fills stats. broad_ms: milliseconds that it took to find the
     /// pairs.

@@ -213,10 +213,9 @@ struct Scene::State {
             call_threads(pairs.slots().count());
             find_contacts(broad_ms);
         } catch (...) {
-            narrow.parts().forget(); // slots may get other bodies before the next step
+            narrow.begin_anew();
             finder.trim();
             drop_pairs();
-            narrow.drop_contacts();
             throw;
         }
     }

@@ -3,8 +3,6 @@
 
 #include "device/launch.h"
 
-#include <raycontact/error.h>
-
 #include <algorithm>
 #include <array>
 #include <bit>

@@ -241,6 +241,65 @@ void expect_nothing_left(Features features, const std::shared_ptr<const Shape>& 
     }
 }
 
+// And who holds what was found before still has it.
+TEST(Allocations, AStepOfOtherPairsThatFailsDoesNotHaveTheOldOnes) {
+    const auto shape = prepared_shape(scenes::scene_model("knot", 60).mesh);
+    Settings settings;
+    settings.execution.devices = "cpu"; // a trial of another allocates
+    settings.execution.threads = 1;
+    std::uint64_t failures = 0;
+    for (std::int64_t k = 0;; ++k) {
+        Scene scene(settings);
+        std::vector<BodyId> bodies;
+        for (int i = 0; i < 3; ++i) bodies.push_back(scene.add(shape, {.translation = {0.2 * i, 0, 0}}));
+        const std::vector<Pair> first{{bodies[0], bodies[1]}}, second{{bodies[0], bodies[2]}};
+        scene.find_contacts(first);
+        const auto held = scene.shared_contacts();
+        const std::size_t count = held->size();
+        ASSERT_GT(count, 0u);
+        allocations_left = k;
+        bool failed = false;
+        try {
+            scene.find_contacts(second);
+        } catch (const std::bad_alloc&) {
+            failed = true;
+        }
+        allocations_left = -1;
+        if (!failed) break;
+        ++failures;
+        ASSERT_EQ(held->size(), count) << "allocation " << k;
+        scene.find_contacts(second);
+        ASSERT_EQ(scene.pairs().size(), 1u);
+        ASSERT_EQ(scene.pairs()[0].second, bodies[2]) << "allocation " << k;
+    }
+    EXPECT_GT(failures, 12u);
+}
+
+// Removing needs no memory, nor does it after a scene gave back what it had for many more.
+TEST(Allocations, ABodyIsRemovedWhereMemoryLacks) {
+    const auto shape = prepared_shape(scenes::scene_model("knot", 60).mesh);
+    Settings settings;
+    settings.execution.devices = "cpu"; // a trial of another allocates
+    settings.execution.threads = 1;
+    Scene scene(settings);
+    std::vector<BodyId> bodies;
+    for (int i = 0; i < 1500; ++i)
+        bodies.push_back(scene.add(shape, {.translation = {0.3 * (i % 12), 0.3 * (i / 12 % 12), 0.3 * (i / 144)}}));
+    scene.find_contacts();
+    const std::size_t most = scene.pairs().size();
+    for (int i = 20; i < 1500; ++i) scene.remove(bodies[std::size_t(i)]);
+    for (int step = 0; step < 6; ++step) {
+        scene.set_pose(bodies[0], {.translation = {0.001 * step, 0, 0}});
+        scene.find_contacts();
+    }
+    ASSERT_GT(scene.pairs().size(), 10u);
+    ASSERT_GT(most, 100 * scene.pairs().size());
+    allocations_left = 0;
+    scene.remove(bodies[1]);
+    allocations_left = -1;
+    EXPECT_FALSE(scene.has(bodies[1]));
+}
+
 TEST(Allocations, AStepThatFailsLeavesNothing) {
     expect_nothing_left(Features::vertices, prepared_shape(scenes::scene_model("knot", 902).mesh));
 }
