@@ -17,6 +17,7 @@ void add_queries(CLI::App& app);
 void add_rays(CLI::App& app);
 void add_stacks(CLI::App& app);
 void add_holds(CLI::App& app);
+void add_motion(CLI::App& app); ///< in holds.cpp
 void add_clash(CLI::App& app);
 void add_scale(CLI::App& app);
 void add_threads(CLI::App& app);

@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds: scenes that a user expects to stand, hang, turn or stop, in a Bullet world that differs by one line and
-// its solver: RayContact with recommend(), the same with 1 000 iterations, GImpact and, where all that moves is convex,
-// Bullet's own shapes, both with Bullet's own settings.
+// Scenes with a verdict each, in a Bullet world that differs by one line and its solver: `holds`, what a user expects
+// to stand, hang, turn or stop, and `motion`, what slides, rolls and bounces as it does on paper. RayContact with
+// recommend() beside Bullet's own finders with Bullet's own settings.
 #include "bench/commands.h"
 #include "bench/options.h"
 
 #include <report/page.h>
 #include <tests/holds/run.h>
+#include <tests/motion/motion.h>
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
+#include <span>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -37,12 +40,60 @@ struct Row {
 struct Variant {
     const char* name;
     Finder finder;
-    int iterations; ///< 0: as the solver has them
+    int iterations = 0; ///< 0: as the solver has them
+    bool speculative = true;
 };
-constexpr Variant variants[] = {{"ours", Finder::edges, 0},
+constexpr Variant of_holds[] = {{"ours", Finder::edges},
                                 {"ours-1000", Finder::edges, 1000},
-                                {"gimpact", Finder::gimpact, 0},
-                                {"convex", Finder::convex, 0}};
+                                {"gimpact", Finder::gimpact},
+                                {"convex", Finder::convex}};
+constexpr Variant of_motion[] = {{"ours", Finder::edges},
+                                 {"ours-off", Finder::edges, 0, false},
+                                 {"gimpact", Finder::gimpact},
+                                 {"bvh", Finder::bvh},
+                                 {"convex", Finder::convex}};
+
+/// What a command runs and says.
+struct Table {
+    const char *name, *title, *summary;
+    std::vector<Hold> (*scenes)();
+    std::span<const Variant> variants;
+    bool rests; ///< the columns of what should rest are printed
+};
+const Table holds_table{
+    "holds",
+    "It holds",
+    "Scenes that a user expects to stand, hang, turn or stop. Ours is RayContact with the solver settings of "
+    "recommend(), ours-1000 with more iterations; gimpact and convex are Bullet's own, with Bullet's settings.",
+    all_holds,
+    of_holds,
+    true};
+const Table motion_table{
+    "motion",
+    "In motion",
+    "Bodies that slide, roll, coast and bounce, beside what is right on paper. Ours is RayContact with recommend(), "
+    "ours-off the same without speculative contacts; gimpact, bvh (convex shapes on a btBvhTriangleMeshShape) and "
+    "convex (on btBoxShapes) are Bullet's own, with Bullet's settings.",
+    all_motions,
+    of_motion,
+    false};
+
+/// Whether a finder differs from the others in this scene.
+bool is_asked(const Variant& variant, const Table& table, const Hold& hold) {
+    const Stack& stack = hold.stack;
+    if (variant.finder == Finder::convex || variant.finder == Finder::bvh) {
+        if (!stack.convex()) return false;
+        // Without such a ground it is what bvh is.
+        return variant.finder == Finder::bvh || table.rests
+               || std::ranges::any_of(stack.bodies, [&](const StackBody& body) {
+                      return body.fixed && stack.shapes[body.shape].box && !stack.shapes[body.shape].own;
+                  });
+    }
+    // Where only shapes of Bullet's own move there is nothing for it to do.
+    return variant.finder != Finder::gimpact || std::ranges::any_of(stack.bodies, [&](const StackBody& body) {
+               return !body.fixed && !stack.shapes[body.shape].own;
+           });
+}
 
 std::string verdict(const HoldResult& result) {
     std::string words = result.holds() ? "holds" : "FAILS";
@@ -51,16 +102,23 @@ std::string verdict(const HoldResult& result) {
     return words;
 }
 
-/// All of a scene's own.
+/// All of a scene's own; a mark is before those that do not hold.
 std::string figures(const HoldResult& result, const char* between) {
     std::string text;
     for (const Figure& figure : result.figures)
-        text += fmt::format("{}{} {:.6g} {}", text.empty() ? "" : between, figure.name, figure.value, figure.unit);
+        text += fmt::format("{}{}{} {:.6g} {}", text.empty() ? "" : between, figure.holds() ? "" : "!", figure.name,
+                            figure.value, figure.unit);
     return text;
 }
 
-void print_row(const Row& row) {
+void print_row(const Row& row, const Table& table) {
     const HoldResult& r = row.result;
+    if (!table.rests) {
+        fmt::print("{:<60} {:<8} {:8.2f}  {}  {}\n", row.hold->name, row.finder, r.step_ms,
+                   r.holds() ? "holds" : "FAILS", figures(r, ", "));
+        std::fflush(stdout);
+        return;
+    }
     fmt::print("{:<36} {:<8} {:8.3f} {:5.1f} {:8.3f} {:4} {:9.2f} {:9.2f} {:9.1f} {:>6} {:8.2f}  {}\n", row.hold->name,
                row.finder, 1000 * r.deepest, r.deepest_time, 1000 * r.deepest_end, r.passed, 1000 * r.speed_median,
                1000 * r.speed_max, 1000 * r.drift, r.asleep < 0 ? "-" : fmt::format("{:.1f}", r.asleep), r.step_ms,
@@ -79,12 +137,11 @@ Json csv_row(const Row& row) {
 }
 
 /// A plot for each scene, a line for each finder; then all figures.
-std::string page(const std::vector<Row>& rows, const std::string& heading, const std::string& command) {
+std::string page(const Table& table, const std::vector<Row>& rows, const std::string& heading,
+                 const std::string& command) {
     report::Page page;
-    page.title = "It holds";
-    page.summary =
-        "Scenes that a user expects to stand, hang, turn or stop. Ours is RayContact with the solver settings "
-        "of recommend(), ours-1000 with more iterations; gimpact and convex are Bullet's own, with Bullet's settings.";
+    page.title = table.title;
+    page.summary = table.summary;
     for (std::size_t i = 0; i < rows.size(); ++i) {
         const Row& row = rows[i];
         const HoldResult& r = row.result;
@@ -107,32 +164,36 @@ std::string page(const std::vector<Row>& rows, const std::string& heading, const
     return report::make_page(page);
 }
 
-void run_all(const Options& options) {
-    Output out(options.out, {"holds"}, {".csv", ".html"});
-    fmt::print("{}\n{:<36} {:<8} {:>8} {:>5} {:>8} {:>4} {:>9} {:>9} {:>9} {:>6} {:>8}\n", heading(out.machine),
-               "scene", "finder", "deep mm", "at s", "end mm", "past", "med mm/s", "max mm/s", "moved mm", "asleep",
-               "ms/step");
-    const std::vector<Hold> holds = all_holds();
+void run_all(const Table& table, const Options& options) {
+    Output out(options.out, {table.name}, {".csv", ".html"});
+    if (!table.rests)
+        fmt::print("{}\n{:<60} {:<8} {:>8}\n", heading(out.machine), "scene", "finder", "ms/step");
+    else
+        fmt::print("{}\n{:<36} {:<8} {:>8} {:>5} {:>8} {:>4} {:>9} {:>9} {:>9} {:>6} {:>8}\n", heading(out.machine),
+                   "scene", "finder", "deep mm", "at s", "end mm", "past", "med mm/s", "max mm/s", "moved mm", "asleep",
+                   "ms/step");
+    const std::vector<Hold> holds = table.scenes();
     std::vector<Row> rows;
     Json fields = Json::array();
     until_stopped([&] {
         for (const Hold& hold : holds) {
             if (hold.name.find(options.only) == std::string::npos) continue;
-            for (const Variant& variant : variants) {
+            for (const Variant& variant : table.variants) {
                 if (!options.finder.empty() && variant.name != options.finder) continue;
-                if (variant.finder == Finder::convex && !hold.stack.convex()) continue;
+                if (!is_asked(variant, table, hold)) continue;
                 end_if_stopped();
                 HoldOptions asked = options.hold;
                 if (variant.iterations > 0) asked.iterations = variant.iterations;
+                if (!variant.speculative) asked.speculative = false;
                 rows.push_back({&hold, variant.name, run_hold(hold, variant.finder, asked)});
-                print_row(rows.back());
+                print_row(rows.back(), table);
                 fields.push_back(csv_row(rows.back()));
             }
         }
     });
     out.finish();
-    out.write("holds", ".csv", csv(out.machine, columns, fields));
-    out.write("holds", ".html", page(rows, heading(out.machine), options.command));
+    out.write(table.name, ".csv", csv(out.machine, columns, fields));
+    out.write(table.name, ".html", page(table, rows, heading(out.machine), options.command));
     out.keep();
 }
 
@@ -148,14 +209,13 @@ std::string command_line(const CLI::App& command) {
     return line;
 }
 
-} // namespace
-
-void add_holds(CLI::App& app) {
-    CLI::App* command = app.add_subcommand(
-        "holds", "What a user expects to stand, hang, turn or stop, beside plain Bullet, with a verdict for each");
+void add_table(CLI::App& app, const Table& table, const std::string& about) {
+    CLI::App* command = app.add_subcommand(table.name, about);
+    std::string finders;
+    for (const Variant& variant : table.variants) finders += (finders.empty() ? "" : ", ") + std::string(variant.name);
     auto o = std::make_shared<Options>();
     scenes::HoldOptions& hold = o->hold;
-    add_world_options(*command, hold.seconds, o->only, o->finder, "ours, ours-1000, gimpact or convex");
+    add_world_options(*command, hold.seconds, o->only, o->finder, finders);
     add_number(*command, "--patience", hold.patience, "of the computer's time after which a run ends early", 0.0, 1e9)
         ->type_name("S");
     command->add_flag("--recommended", hold.recommended_for_all, "Bullet's finders get the recommended solver, too");
@@ -173,11 +233,23 @@ void add_holds(CLI::App& app) {
             "--print", [&hold](const std::pair<int, int>& steps) { std::tie(hold.print_from, hold.print_to) = steps; },
             "print the contacts of these steps")
         ->type_name("FROM TO");
-    add_out(*command, "--out", o->out, "write DIR/<machine>/holds-<date>.csv and .html")->type_name("DIR");
-    command->callback([o, command] {
+    add_out(*command, "--out", o->out, fmt::format("write DIR/<machine>/{}-<date>.csv and .html", table.name))
+        ->type_name("DIR");
+    command->callback([o, command, &table] {
         o->command = command_line(*command);
-        run_all(*o);
+        run_all(table, *o);
     });
+}
+
+} // namespace
+
+void add_holds(CLI::App& app) {
+    add_table(app, holds_table,
+              "What a user expects to stand, hang, turn or stop, beside plain Bullet, with a verdict for each");
+}
+
+void add_motion(CLI::App& app) {
+    add_table(app, motion_table, "What slides, rolls and bounces as it does on paper, beside plain Bullet");
 }
 
 } // namespace raycontact::bench

@@ -237,7 +237,7 @@ std::vector<Hold> contraptions() {
     }
     StackShape ball = shape_of(smooth_ball(0.5, 24, 11), true);
     all.push_back(foil("ball, a mesh, 100 m/s, foil of 1 mm", ball));
-    ball.ball = 0.5;
+    ball.own = [] { return std::make_shared<btSphereShape>(btScalar(0.5)); };
     all.push_back(foil("ball, btSphereShape, the same", ball));
     for (const int links : {5, 50}) all.push_back(chain(links));
     all.push_back(gears());

@@ -41,12 +41,12 @@ struct Hold {
     std::function<std::unique_ptr<Course>()> course = [] { return std::make_unique<Course>(); };
     Ground ground = Ground::slab;
     double seconds = 20, hertz = 60;
-    double size = 1;                   ///< metres, of the smallest body that moves
-    double slop = 0.001;               ///< metres, of the recommended solver
-    double deepest = 0.02;             ///< at most, of the sampled steps
-    std::optional<double> rest = 5e-3; ///< 1/s: the speed below which all are at the end, none: they go on
-    std::optional<double> drift;       ///< at most, from where they were put
-    int sample = 6;                    ///< steps from one exact look to the next
+    double size = 1;                      ///< metres, of the smallest body that moves
+    std::optional<double> slop = 0.001;   ///< metres, of the recommended solver; none: what recommend() chooses
+    std::optional<double> deepest = 0.02; ///< at most, of the sampled steps; none: nobody looks
+    std::optional<double> rest = 5e-3;    ///< 1/s: the speed below which all are at the end, none: they go on
+    std::optional<double> drift;          ///< at most, from where they were put
+    int sample = 6;                       ///< steps from one exact look to the next
 };
 
 /// In the order in which docs/internals/bullet-measurements.md has them.

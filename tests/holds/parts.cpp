@@ -206,6 +206,30 @@ Mesh hook(double length, double tip, double thick) {
     return skin.mesh();
 }
 
+Mesh frustum(double below, double above, double height, std::uint32_t around) {
+    const double half = height / 2;
+    return turned("frustum", {{0, -half}, {below, -half}, {above, half}, {0, half}}, around);
+}
+
+Mesh axle_with_wheels(double radius, double flange_radius, double axle_radius, double flange, double inner,
+                      double outer, std::uint32_t around) {
+    std::vector<Point> profile{
+        {0, -outer},           {radius, -outer}, {radius, -inner}, {flange_radius, -inner}, {flange_radius, -flange},
+        {axle_radius, -flange}};
+    for (std::size_t k = profile.size(); k-- > 0;) profile.push_back({profile[k].x, -profile[k].y});
+    return turned("wheelset", profile, around);
+}
+
+Mesh step(double size_x, double size_y, double thick, double rise) {
+    // From a point below the upper half all of it can be seen.
+    const double half = size_x / 2, from_x = half / 4, from_z = -thick / 2;
+    std::vector<Point> polygon{{-half, -thick}, {half, -thick}, {half, rise}, {0, rise}, {0, 0}, {-half, 0}};
+    for (Point& p : polygon) p = {p.x - from_x, p.y - from_z};
+    Mesh mesh = drawn_out("step", polygon, -size_y / 2, size_y / 2);
+    for (Vec3& v : mesh.vertices) v = {v.x + from_x, -v.z, v.y + from_z};
+    return mesh;
+}
+
 Mesh involute_gear(std::uint32_t teeth, double module, double width) {
     constexpr std::uint32_t flank = 6; // pieces
     constexpr double thinner = 0.98;   // a tooth than its half of the pitch

@@ -28,6 +28,14 @@ Mesh block_with_hole(double radius, double outer, double depth, double floor, st
 Mesh mug(double radius, double height, double wall);
 /// A rod along x that begins in z = 0 at x = 0 and has its tip bent up.
 Mesh hook(double length, double tip, double thick);
+/// About the origin: radii below and above.
+Mesh frustum(double below, double above, double height, std::uint32_t around);
+/// A step along y, its top at z = 0 for x < 0 and at `rise` for x > 0, `thick` below z = 0.
+Mesh step(double size_x, double size_y, double thick, double rise);
+/// An axle with two wheels that have a flange each on their inner side, about the origin: a flange's faces are at
+/// `flange` and `inner` from the middle, the tread from there to `outer`.
+Mesh axle_with_wheels(double radius, double flange_radius, double axle_radius, double flange, double inner,
+                      double outer, std::uint32_t around);
 /// Spur gear with an involute of 20 degrees; a tooth points along x. z from -width / 2 to width / 2.
 Mesh involute_gear(std::uint32_t teeth, double module, double width);
 

@@ -28,7 +28,7 @@ StackSolver solver_of(const Hold& hold, Finder finder, const HoldOptions& option
     StackSolver solver;
     solver.recommended = finder == Finder::edges || finder == Finder::vertices || options.recommended_for_all;
     if (solver.recommended) {
-        solver.slop = options.slop.value_or(hold.slop);
+        solver.slop = options.slop ? options.slop : hold.slop;
         solver.iterations = options.iterations > 0 ? options.iterations : 20;
     }
     solver.speculative = options.speculative;
@@ -62,8 +62,8 @@ void judge_hold(const Hold& hold, HoldResult& result) {
     const auto fail = [&](const std::string& why) { result.failures.push_back(why); };
     if (result.passed > 0) fail(std::to_string(result.passed) + " passed through");
     // Negated, so that what is not a number does not hold.
-    if (!(result.deepest <= hold.deepest * hold.size))
-        fail(words("deepest", 1000 * result.deepest, 1000 * hold.deepest * hold.size, "mm"));
+    if (hold.deepest && !(result.deepest <= *hold.deepest * hold.size))
+        fail(words("deepest", 1000 * result.deepest, 1000 * *hold.deepest * hold.size, "mm"));
     if (hold.rest && !(result.speed_max <= *hold.rest * hold.size))
         fail(words("speed", 1000 * result.speed_max, 1000 * *hold.rest * hold.size, "mm/s"));
     if (hold.rest && result.asleep < 0) fail("not asleep");
@@ -85,7 +85,8 @@ HoldResult run_hold(const Hold& scene, Finder finder, const HoldOptions& options
     if (options.hertz > 0) hold.hertz = options.hertz;
     StackWorld world(hold.stack, hold.ground == Ground::slab && finder == Finder::convex ? Ground::box : hold.ground,
                      finder, solver_of(hold, finder, options));
-    DepthProbe probe(hold.stack, hold.ground);
+    std::optional<DepthProbe> probe;
+    if (hold.deepest) probe.emplace(hold.stack, hold.ground);
     const auto course = hold.course();
     course->begin(world);
     const auto& bodies = hold.stack.bodies;
@@ -122,7 +123,7 @@ HoldResult run_hold(const Hold& scene, Finder finder, const HoldOptions& options
         if (last_second.size() > static_cast<std::size_t>(second)) last_second.erase(last_second.begin());
         result.ended_early = spent > options.patience;
         if (done % hold.sample == 0 || done == steps || result.ended_early) {
-            const double deepest = probe.deepest(poses);
+            const double deepest = probe ? probe->deepest(poses) : 0;
             result.deepest_end = deepest;
             if (deepest > result.deepest) {
                 result.deepest = deepest;

@@ -50,7 +50,8 @@ StackShape tray_of(const Vec3& size, double thick) {
 }
 
 bool Stack::convex() const {
-    return std::ranges::all_of(bodies, [this](const StackBody& b) { return b.fixed || shapes[b.shape].convex; });
+    return std::ranges::all_of(
+        bodies, [this](const StackBody& b) { return b.fixed || shapes[b.shape].convex || shapes[b.shape].own; });
 }
 
 Stack column() {

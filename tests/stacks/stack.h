@@ -4,9 +4,13 @@
 #include <raycontact/mesh.h>
 #include <raycontact/pose.h>
 
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
+
+class btCollisionShape;
 
 namespace raycontact::scenes {
 
@@ -14,14 +18,15 @@ namespace raycontact::scenes {
 struct StackShape {
     Mesh mesh;
     std::optional<Vec3> box; ///< its size, if it is a box
-    double ball = 0;         ///< its radius, if it is a btSphereShape for every finder
     bool convex = true;
     double size = 0; ///< longest edge of its box, metres
+    /// Makes a shape of Bullet's that every finder gets in place of the mesh.
+    std::function<std::shared_ptr<btCollisionShape>()> own = nullptr;
 };
 
 struct StackBody {
     std::size_t shape = 0;
-    Pose pose;
+    Pose pose = {};
     bool fixed = false;    ///< part of the ground
     double density = 500;  ///< kg/m^3
     double friction = 0.8; ///< two that touch have the product
@@ -40,7 +45,7 @@ struct Stack {
     std::vector<StackBody> bodies;
     bool stands = true;    ///< where it was put; otherwise it falls, and must not pass through anything
     double gravity = 9.81; ///< m/s^2
-    bool convex() const;   ///< all bodies that move are
+    bool convex() const;   ///< all bodies that move are, or are shapes of Bullet's own
 };
 
 Stack column();        ///< ten cubes

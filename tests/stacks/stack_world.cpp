@@ -13,17 +13,8 @@
 
 namespace raycontact::scenes {
 
-namespace {
-
 btVector3 to_bullet(const Vec3& v) {
     return btVector3(btScalar(v.x), btScalar(v.y), btScalar(v.z));
-}
-
-btTransform to_bullet(const Pose& pose) {
-    const auto& r = pose.rotation;
-    return btTransform(btMatrix3x3(btScalar(r[0]), btScalar(r[1]), btScalar(r[2]), btScalar(r[3]), btScalar(r[4]),
-                                   btScalar(r[5]), btScalar(r[6]), btScalar(r[7]), btScalar(r[8])),
-                       to_bullet(pose.translation));
 }
 
 std::unique_ptr<btTriangleMesh> triangles_of(const Mesh& mesh) {
@@ -32,6 +23,15 @@ std::unique_ptr<btTriangleMesh> triangles_of(const Mesh& mesh) {
     for (const auto& t : mesh.triangles)
         out->addTriangleIndices(static_cast<int>(t[0]), static_cast<int>(t[1]), static_cast<int>(t[2]));
     return out;
+}
+
+namespace {
+
+btTransform transform_of(const Pose& pose) {
+    const auto& r = pose.rotation;
+    return btTransform(btMatrix3x3(btScalar(r[0]), btScalar(r[1]), btScalar(r[2]), btScalar(r[3]), btScalar(r[4]),
+                                   btScalar(r[5]), btScalar(r[6]), btScalar(r[7]), btScalar(r[8])),
+                       to_bullet(pose.translation));
 }
 
 std::unique_ptr<btCollisionDispatcher> make_dispatcher(Finder finder, bool speculative,
@@ -70,6 +70,8 @@ std::string_view to_string(Finder finder) {
         return "gimpact";
     case Finder::convex:
         return "convex";
+    case Finder::bvh:
+        return "bvh";
     }
     return "";
 }
@@ -102,7 +104,7 @@ struct StackWorld::State {
     State& operator=(const State&) = delete;
 
     void add_ground(Ground ground);
-    btCollisionShape& add_moving(const StackShape& shape, bool convex);
+    btCollisionShape& add_solid(const StackShape& shape, bool convex);
     btCollisionShape& add_fixed(const Mesh& mesh);
     void add_body(btCollisionShape& shape, btScalar mass, const btVector3& inertia, const StackBody& body);
 
@@ -112,7 +114,7 @@ struct StackWorld::State {
     btSequentialImpulseConstraintSolver solver;
     btDiscreteDynamicsWorld world;
     std::vector<std::unique_ptr<btTriangleMesh>> meshes;
-    std::vector<std::unique_ptr<btCollisionShape>> shapes;
+    std::vector<std::shared_ptr<btCollisionShape>> shapes;
     std::vector<std::unique_ptr<btRigidBody>> bodies;
     std::size_t first_body = 0; ///< 1 where there is a ground
     std::vector<std::unique_ptr<btTypedConstraint>> constraints;
@@ -124,9 +126,9 @@ btCollisionShape& StackWorld::State::add_fixed(const Mesh& mesh) {
     return *shapes.back();
 }
 
-btCollisionShape& StackWorld::State::add_moving(const StackShape& shape, bool convex) {
-    if (shape.ball > 0) {
-        shapes.push_back(std::make_unique<btSphereShape>(btScalar(shape.ball)));
+btCollisionShape& StackWorld::State::add_solid(const StackShape& shape, bool convex) {
+    if (shape.own) {
+        shapes.push_back(shape.own());
     } else if (convex && shape.box) {
         shapes.push_back(std::make_unique<btBoxShape>(to_bullet(*shape.box) / 2));
     } else if (convex) {
@@ -162,7 +164,7 @@ void StackWorld::State::add_ground(Ground ground) {
 void StackWorld::State::add_body(btCollisionShape& shape, btScalar mass, const btVector3& inertia,
                                  const StackBody& body) {
     btRigidBody::btRigidBodyConstructionInfo info(mass, nullptr, &shape, inertia);
-    info.m_startWorldTransform = to_bullet(body.pose);
+    info.m_startWorldTransform = transform_of(body.pose);
     info.m_friction = btScalar(body.friction);
     info.m_linearDamping = info.m_angularDamping = btScalar(body.damping);
     info.m_rollingFriction = info.m_spinningFriction = btScalar(body.rolling);
@@ -173,35 +175,31 @@ void StackWorld::State::add_body(btCollisionShape& shape, btScalar mass, const b
 
 StackWorld::StackWorld(const Stack& stack, Ground ground, Finder finder, const StackSolver& solver)
     : state_(std::make_unique<State>(finder, solver.speculative)) {
-    if (finder == Finder::convex && !stack.convex()) throw InputError("StackWorld: not all bodies are convex");
+    const bool convex = finder == Finder::convex || finder == Finder::bvh;
+    if (convex && !stack.convex()) throw InputError("StackWorld: not all bodies are convex");
     State& s = *state_;
     s.world.setGravity(btVector3(0, 0, btScalar(-stack.gravity)));
     btContactSolverInfo& info = s.world.getSolverInfo();
     info.m_numIterations = solver.iterations;
-    info.m_linearSlop = btScalar(solver.slop);
+    if (solver.slop) info.m_linearSlop = btScalar(*solver.slop);
     if (solver.two_friction_directions)
         info.m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS | SOLVER_DISABLE_VELOCITY_DEPENDENT_FRICTION_DIRECTION;
-    if (solver.recommended) {
-        bullet::SolverSettings recommended;
-        recommended.slop = solver.slop;
-        recommended.iterations = solver.iterations;
-        bullet::recommend(s.world, recommended);
-    }
     s.add_ground(ground);
     std::vector<Mass> masses;
     for (const StackShape& shape : stack.shapes) masses.push_back(mass_of(shape.mesh.vertices, shape.mesh.triangles));
-    std::vector<btCollisionShape*> moving(stack.shapes.size()), fixed(stack.shapes.size());
+    std::vector<btCollisionShape*> solid(stack.shapes.size()), fixed(stack.shapes.size());
     for (const StackBody& body : stack.bodies) {
         const StackShape& shape = stack.shapes[body.shape];
         // A box that is fixed is one for the convex finder, too.
-        const bool as_mesh = body.fixed && !(finder == Finder::convex && shape.box);
-        btCollisionShape*& made = (as_mesh ? fixed : moving)[body.shape];
-        if (made == nullptr) made = as_mesh ? &s.add_fixed(shape.mesh) : &s.add_moving(shape, finder == Finder::convex);
+        const bool as_mesh = body.fixed && !shape.own && !(finder == Finder::convex && shape.box);
+        btCollisionShape*& made = (as_mesh ? fixed : solid)[body.shape];
+        if (made == nullptr) made = as_mesh ? &s.add_fixed(shape.mesh) : &s.add_solid(shape, convex);
         const Mass& m = masses[body.shape];
         const double density = body.fixed ? 0 : body.density;
         const btVector3 inertia = btScalar(density) * to_bullet(Vec3{m.inertia[0], m.inertia[4], m.inertia[8]});
         s.add_body(*made, btScalar(density * m.volume), inertia, body);
     }
+    if (solver.recommended) bullet::recommend(s.world, {.slop = solver.slop, .iterations = solver.iterations});
 }
 
 StackWorld::~StackWorld() = default;

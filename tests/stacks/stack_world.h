@@ -6,11 +6,14 @@
 
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string_view>
 
 class btDiscreteDynamicsWorld;
 class btRigidBody;
+class btTriangleMesh;
 class btTypedConstraint;
+class btVector3;
 
 namespace raycontact::scenes {
 
@@ -20,6 +23,7 @@ enum class Finder {
     vertices, ///< RayContact, Features::vertices
     gimpact,  ///< Bullet's own for moving meshes
     convex,   ///< btBoxShape and, for wedges, btConvexHullShape in place of the meshes, where all are convex
+    bvh,      ///< the same, but what is fixed stays a btBvhTriangleMeshShape
 };
 enum class Ground {
     plane, ///< btStaticPlaneShape
@@ -34,10 +38,13 @@ std::string_view to_string(Ground ground);
 /// Of the ground that is a slab or a quad.
 Mesh ground_mesh(Ground ground);
 
+btVector3 to_bullet(const Vec3& v);
+std::unique_ptr<btTriangleMesh> triangles_of(const Mesh& mesh);
+
 /// Of Bullet's solver, the same for every finder. Defaults: Bullet's own.
 struct StackSolver {
     int iterations = 10;
-    double slop = 0;                      ///< metres
+    std::optional<double> slop;           ///< metres; empty: Bullet's or what is recommended
     bool two_friction_directions = false; ///< fixed by the normal
     bool recommended = false;             ///< the rest as bullet::recommend() sets it
     bool speculative = true;              ///< RayContact's contacts, not the solver's
@@ -47,7 +54,7 @@ struct StackSolver {
 /// btBvhTriangleMeshShape, for every finder: one line differs.
 class StackWorld {
 public:
-    /// Throws InputError for Finder::convex where bodies are not.
+    /// Throws InputError for Finder::convex and bvh where bodies are not.
     StackWorld(const Stack& stack, Ground ground, Finder finder, const StackSolver& solver = {});
     ~StackWorld();
     StackWorld(const StackWorld&) = delete;
