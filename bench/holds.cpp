@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <span>
@@ -102,12 +103,17 @@ std::string verdict(const HoldResult& result) {
     return words;
 }
 
-/// All of a scene's own; a mark is before those that do not hold.
+std::string bounds(const Figure& figure) {
+    return std::isinf(figure.least) ? fmt::format(" [at most {:.4g}]", figure.most)
+                                    : fmt::format(" [{:.4g} to {:.4g}]", figure.least, figure.most);
+}
+
+/// All of a scene's own; those that do not hold have a mark and their bounds.
 std::string figures(const HoldResult& result, const char* between) {
     std::string text;
     for (const Figure& figure : result.figures)
-        text += fmt::format("{}{}{} {:.6g} {}", text.empty() ? "" : between, figure.holds() ? "" : "!", figure.name,
-                            figure.value, figure.unit);
+        text += fmt::format("{}{}{} {:.6g} {}{}", text.empty() ? "" : between, figure.holds() ? "" : "!", figure.name,
+                            figure.value, figure.unit, figure.holds() ? "" : bounds(figure));
     return text;
 }
 

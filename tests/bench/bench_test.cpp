@@ -178,7 +178,7 @@ TEST(Bench, HelpNamesEveryBenchmark) {
     const Ran whole = run("--help", true);
     EXPECT_EQ(whole.status, 0);
     for (const std::string name : {"peers", "growth", "sweep", "device", "roofline", "several", "balance", "rays",
-                                   "stacks", "holds", "clash", "new-shape", "sleeping", "floor"}) {
+                                   "stacks", "holds", "motion", "clash", "new-shape", "sleeping", "floor"}) {
         EXPECT_NE(whole.out.find("\n  " + name + " "), std::string::npos) << name;
         EXPECT_EQ(run(name + " --help", true).status, 0) << name;
         EXPECT_EQ(run(name + " --no-such-option", true).status, 2) << name;
@@ -196,6 +196,8 @@ TEST(Bench, WorldsAreWritten) {
     EXPECT_EQ(table_of(content(file_with(folder.path, "holds-", ".csv"))).size(), 1u);
     const std::string page = content(file_with(folder.path, "holds-", ".html"));
     EXPECT_NE(page.find("--speculative off --print 1 2 --out"), std::string::npos);
+    ASSERT_EQ(run("motion --seconds 0.6 --only 'box slides on closed 1 x 1' --finder convex" + out).status, 0);
+    EXPECT_FALSE(table_of(content(file_with(folder.path, "motion-", ".csv"))).empty());
 }
 
 TEST(BenchGrowth, EveryPart) {

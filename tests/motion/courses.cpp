@@ -39,7 +39,8 @@ Figure figure(const char* name, const std::string& unit, const Worst& worst, dou
 
 /// Of a number that each body has, the one farthest from what is right.
 Worst farthest(const std::vector<double>& values, const std::vector<std::size_t>& bodies, double right) {
-    Worst worst{right, bodies.empty() ? 0 : bodies[0]};
+    if (values.empty()) return {std::nan(""), 0};
+    Worst worst{right, bodies[0]};
     for (std::size_t k = 0; k < values.size(); ++k)
         if (!(std::abs(values[k] - right) <= std::abs(worst.value - right))) worst = {values[k], bodies[k]};
     return worst;
@@ -78,6 +79,11 @@ void Launched::before_step(StackWorld& world, double dt) {
 void Launched::after_step(const StackWorld& world, double time) {
     time_ = time;
     if (gone_) watch(world, time - rest_);
+}
+
+std::vector<Figure> Launched::figures() const {
+    if (!gone_) return {{.name = "was let go after", .unit = "s", .value = std::nan("")}};
+    return measured();
 }
 
 Slide::Slide(std::vector<Launch> launches, double braking, const SlideBounds& bounds, const Vec3& ground)
@@ -140,8 +146,7 @@ void Slide::watch(const StackWorld& world, double since) {
     }
 }
 
-std::vector<Figure> Slide::figures() const {
-    if (along_.empty()) return {};
+std::vector<Figure> Slide::measured() const {
     std::vector<Figure> all{about("went", "of its way", farthest(along_, movers_, 1), 1 - bounds_.way, 1 + bounds_.way),
                             figure("beside it by", "of it", beside_, 1, bounds_.way)};
     if (braking_ == 0) {
@@ -187,8 +192,7 @@ void Coast::watch(const StackWorld& world, double) {
     }
 }
 
-std::vector<Figure> Coast::figures() const {
-    if (first_energy_.empty()) return {};
+std::vector<Figure> Coast::measured() const {
     return {about("has at the end", "of its energy", farthest(energy_, movers_, 1), 1 - loses_, 1.005),
             figure("gains at most", "of its energy", gained_, 1, 0.005)};
 }
@@ -204,7 +208,7 @@ void Halt::watch(const StackWorld& world, double) {
     for (const std::size_t body : movers_) speed_.most(double(world.body(body).getLinearVelocity().x()), body);
 }
 
-std::vector<Figure> Halt::figures() const {
+std::vector<Figure> Halt::measured() const {
     Figure beyond = figure("went beyond it by", "mm", beyond_, 1000, past_);
     beyond.least = -1000 * past_; // it came there
     return {beyond, figure("goes on at", "m/s", speed_, 1, 0.05)};
@@ -238,8 +242,7 @@ void Roll::watch(const StackWorld& world, double) {
     }
 }
 
-std::vector<Figure> Roll::figures() const {
-    if (ways_.empty()) return {};
+std::vector<Figure> Roll::measured() const {
     const double corner = std::numbers::pi / sides_, side = 2 * radius_ * std::sin(corner);
     double slowest = 1e9, explained = 0, fastest = 0, slowest_launch = 1e9;
     std::size_t worst = 0;
@@ -261,7 +264,7 @@ std::vector<Figure> Roll::figures() const {
     const double faster = 0.01 + gravity * radius_ * (1 - std::cos(corner)) / (slowest_launch * slowest_launch);
     return {about("rolls on at", "of its speed", end, 0.95 * explained, 1 + faster),
             figure("faster by", "of its speed", faster_, 1, faster), figure("up by", "mm", up_, 1000, up),
-            figure("beside by", "mm", beside_, 1000, play_), figure("leans by", "degrees", lean_, 1, 1)};
+            figure("beside by", "mm", beside_, 1000, play_), figure("leans by", "degrees", lean_, 1, 3)};
 }
 
 Fall::Fall(std::vector<double> drops, double restitution)
@@ -289,7 +292,7 @@ void Fall::watch(const StackWorld& world, double) {
     }
 }
 
-std::vector<Figure> Fall::figures() const {
+std::vector<Figure> Fall::measured() const {
     std::vector<double> rose;
     for (std::size_t k = 0; k < highest_.size(); ++k) {
         const double ground = first_[k].translation.z - drops_[k];
@@ -324,8 +327,7 @@ void ToAndFro::watch(const StackWorld& world, double since) {
     }
 }
 
-std::vector<Figure> ToAndFro::figures() const {
-    if (speeds_.empty()) return {};
+std::vector<Figure> ToAndFro::measured() const {
     const double right = seconds_ * launches_[0].velocity.x / room_;
     return {about("keeps", "of its speed", farthest(speeds_, movers_, 1), 0.9, 1.1),
             about("bounced", "times", farthest(bounces_, movers_, right), 0.9 * right - 1, 1.1 * right + 1),

@@ -3,9 +3,9 @@
 
 #include <tests/holds/hold.h>
 
-#include <functional>
-#include <memory>
-#include <string>
+#include <cmath>
+#include <cstddef>
+#include <utility>
 #include <vector>
 
 namespace raycontact::scenes {
@@ -15,12 +15,12 @@ struct Launch {
     Vec3 spin;     ///< rad/s
 };
 
-/// The worst of several bodies, and which it was.
+/// The worst of several bodies, and which it was. What is not a number is worse than any, and stays.
 struct Worst {
     double value = 0;
     std::size_t body = 0;
     void most(double next, std::size_t whose) {
-        if (next > value) *this = {next, whose};
+        if (!(next <= value) && !std::isnan(value)) *this = {next, whose};
     }
 };
 
@@ -31,9 +31,12 @@ public:
     void begin(StackWorld& world) override;
     void before_step(StackWorld& world, double dt) override;
     void after_step(const StackWorld& world, double time) override;
+    /// One that does not hold where they were not let go.
+    std::vector<Figure> figures() const final;
 
 protected:
     virtual void start(const StackWorld&) {}
+    virtual std::vector<Figure> measured() const = 0;
     /// After each step since. since: seconds.
     virtual void watch(const StackWorld& world, double since) = 0;
 
@@ -62,11 +65,11 @@ public:
     Slide(std::vector<Launch> launches, double braking, const SlideBounds& bounds, const Vec3& ground = {});
     void begin(StackWorld& world) override;
     void before_step(StackWorld& world, double dt) override;
-    std::vector<Figure> figures() const override;
 
 protected:
     void start(const StackWorld& world) override;
     void watch(const StackWorld& world, double since) override;
+    std::vector<Figure> measured() const override;
 
 private:
     double braking_;
@@ -82,10 +85,10 @@ class Coast : public Launched {
 public:
     /// lowest: metres, the height of their middles where they have no energy of place. loses: part of it, at most.
     Coast(std::vector<Launch> launches, double lowest, double loses);
-    std::vector<Figure> figures() const override;
 
 protected:
     void watch(const StackWorld& world, double since) override;
+    std::vector<Figure> measured() const override;
 
 private:
     double lowest_, loses_;
@@ -100,10 +103,10 @@ class Halt : public Launched {
 public:
     /// reach: metres from a body's middle to its front. past: metres that its middle may go farther.
     Halt(std::vector<Launch> launches, double reach, double past);
-    std::vector<Figure> figures() const override;
 
 protected:
     void watch(const StackWorld& world, double since) override;
+    std::vector<Figure> measured() const override;
 
 private:
     double reach_, past_;
@@ -115,11 +118,11 @@ class Roll : public Launched {
 public:
     /// play: metres that they may go sideways.
     Roll(std::vector<Launch> launches, double radius, double sides, double play);
-    std::vector<Figure> figures() const override;
 
 protected:
     void start(const StackWorld& world) override;
     void watch(const StackWorld& world, double since) override;
+    std::vector<Figure> measured() const override;
 
 private:
     double radius_, sides_, play_;
@@ -134,10 +137,10 @@ public:
     /// drops: metres that each falls.
     Fall(std::vector<double> drops, double restitution);
     void begin(StackWorld& world) override;
-    std::vector<Figure> figures() const override;
 
 protected:
     void watch(const StackWorld& world, double since) override;
+    std::vector<Figure> measured() const override;
 
 private:
     std::vector<double> drops_;
@@ -153,10 +156,10 @@ public:
     /// room: metres from one wall to the other, less the body.
     ToAndFro(std::vector<Launch> launches, double room);
     void begin(StackWorld& world) override;
-    std::vector<Figure> figures() const override;
 
 protected:
     void watch(const StackWorld& world, double since) override;
+    std::vector<Figure> measured() const override;
 
 private:
     double room_, seconds_ = 0;

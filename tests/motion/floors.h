@@ -36,7 +36,7 @@ Floor joined_floor(std::uint32_t left, std::uint32_t right);
 /// Two slabs side by side, `gap` metres apart, that of x > 0 higher by `rise` metres, each of cells x cells.
 Floor flush_floor(double gap, double rise, std::uint32_t cells = 1);
 Floor tiled_floor(double uneven); ///< 12 x 12 cubes of 1 m, flush; each by turns higher by `uneven` metres
-/// A closed mesh, and two bodies, whose top is higher by `rise` metres for x > 0.
+/// A closed mesh whose top is higher by `rise` metres for x > 0.
 Floor stepped_floor(double rise);
 
 } // namespace raycontact::scenes

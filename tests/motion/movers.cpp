@@ -168,7 +168,7 @@ Mover bullet_cylinder() {
 
 Mover bullet_hull() {
     return own("btConvexHullShape", hull(), [] {
-        const auto shape = std::make_shared<btConvexHullShape>();
+        auto shape = std::make_shared<btConvexHullShape>();
         for (const Vec3& v : hull_mesh().vertices) shape->addPoint(to_bullet(v), false);
         shape->recalcLocalAabb();
         return shape;

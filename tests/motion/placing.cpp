@@ -36,7 +36,7 @@ std::vector<Launch> star(double speed) {
 
 void add_star(Stack& stack, const Mover& mover, const std::vector<Launch>& launches, double before, double friction,
               double rise) {
-    // Off the middle: no body goes along edges of the mesh, but for the two along x and y of some.
+    // Off the middle, so that no body goes along a mesh's edges all the way.
     constexpr Vec3 middle{0.037, 0.021, 0};
     const std::size_t shape = stack.shapes.size();
     stack.shapes.push_back(mover.shape);

@@ -14,8 +14,8 @@ namespace raycontact::scenes {
 Hold motion(std::string name, std::string means, const Floor& floor);
 /// Velocities of so many metres a second in 12 directions, 30 degrees from one to the next, the first along x.
 std::vector<Launch> star(double speed);
-/// A mover for each launch, so many metres before the middle on its way and turned with it. They stand on z = 0, or
-/// where launches go uphill, on `rise` metres for x > 0.
+/// A mover for each launch, so many metres before the middle on its way and turned with it. They stand on a
+/// ground whose top is z = 0, and `rise` metres for x > 0.
 void add_star(Stack& stack, const Mover& mover, const std::vector<Launch>& launches, double before, double friction,
               double rise = 0);
 
