@@ -79,21 +79,22 @@ const Table motion_table{
     of_motion,
     false};
 
-/// Whether a finder differs from the others in this scene.
+/// Whether a finder can take part in a scene, and in motion does what no other does.
 bool is_asked(const Variant& variant, const Table& table, const Hold& hold) {
     const Stack& stack = hold.stack;
-    if (variant.finder == Finder::convex || variant.finder == Finder::bvh) {
-        if (!stack.convex()) return false;
-        // Without such a ground it is what bvh is.
-        return variant.finder == Finder::bvh || table.rests
-               || std::ranges::any_of(stack.bodies, [&](const StackBody& body) {
-                      return body.fixed && stack.shapes[body.shape].box && !stack.shapes[body.shape].own;
-                  });
-    }
-    // Where only shapes of Bullet's own move there is nothing for it to do.
-    return variant.finder != Finder::gimpact || std::ranges::any_of(stack.bodies, [&](const StackBody& body) {
-               return !body.fixed && !stack.shapes[body.shape].own;
-           });
+    const bool takes_convex = variant.finder == Finder::convex || variant.finder == Finder::bvh;
+    if (takes_convex && !stack.convex()) return false;
+    if (table.rests) return true;
+    const auto any = [&](auto&& test) {
+        return std::ranges::any_of(stack.bodies,
+                                   [&](const StackBody& body) { return test(body, stack.shapes[body.shape]); });
+    };
+    if (variant.finder == Finder::convex)
+        return any(
+            [](const StackBody& body, const StackShape& shape) { return body.fixed && shape.box && !shape.own; });
+    if (variant.finder == Finder::gimpact)
+        return any([](const StackBody& body, const StackShape& shape) { return !body.fixed && !shape.own; });
+    return true;
 }
 
 std::string verdict(const HoldResult& result) {
@@ -120,7 +121,7 @@ std::string figures(const HoldResult& result, const char* between) {
 void print_row(const Row& row, const Table& table) {
     const HoldResult& r = row.result;
     if (!table.rests) {
-        fmt::print("{:<60} {:<8} {:8.2f}  {}  {}\n", row.hold->name, row.finder, r.step_ms,
+        fmt::print("{:<72} {:<8} {:8.2f}  {}  {}\n", row.hold->name, row.finder, r.step_ms,
                    r.holds() ? "holds" : "FAILS", figures(r, ", "));
         std::fflush(stdout);
         return;
@@ -173,7 +174,7 @@ std::string page(const Table& table, const std::vector<Row>& rows, const std::st
 void run_all(const Table& table, const Options& options) {
     Output out(options.out, {table.name}, {".csv", ".html"});
     if (!table.rests)
-        fmt::print("{}\n{:<60} {:<8} {:>8}\n", heading(out.machine), "scene", "finder", "ms/step");
+        fmt::print("{}\n{:<72} {:<8} {:>8}\n", heading(out.machine), "scene", "finder", "ms/step");
     else
         fmt::print("{}\n{:<36} {:<8} {:>8} {:>5} {:>8} {:>4} {:>9} {:>9} {:>9} {:>6} {:>8}\n", heading(out.machine),
                    "scene", "finder", "deep mm", "at s", "end mm", "past", "med mm/s", "max mm/s", "moved mm", "asleep",

@@ -91,7 +91,6 @@ std::vector<Hold> bounces() {
         for (const Floor& floor : {closed_floor(1, 1), closed_floor(100, 100)}) all.push_back(fall(mover, floor, 0.5));
     all.push_back(fall(bullet_ball(), open_floor(100, 100), 0.8));
     all.push_back(to_and_fro(bullet_ball(), 0.1));
-    all.push_back(to_and_fro(bullet_capsule(), 0.2));
     return all;
 }
 

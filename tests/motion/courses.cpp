@@ -299,7 +299,7 @@ std::vector<Figure> Fall::measured() const {
         rose.push_back((highest_[k] - ground) / (restitution_ * restitution_ * drops_[k]));
     }
     return {about("bounced to", "of the right height", farthest(rose, movers_, 1), 0.9, 1.1),
-            figure("turned by", "degrees", turn_, 1, 1)};
+            figure("turned by", "degrees", turn_, 1, 5)};
 }
 
 ToAndFro::ToAndFro(std::vector<Launch> launches, double room) : Launched(std::move(launches), 0), room_(room) {}
