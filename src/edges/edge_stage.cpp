@@ -162,7 +162,14 @@ void EdgeStage::find(Workspace& work, Block& block, const Question& question, co
     const bool told = in_contact || !speculative.empty();
     if (settings.is_speculative() && asked.edges)
         find_speculative_edges({a, b, speculative_margin(settings, a, b)}, told, near, work.found);
-    work.found.insert(work.found.end(), speculative.begin(), speculative.end());
+    // A vertex that edges found inside is no longer near.
+    const std::size_t touching = work.found.size();
+    std::ranges::copy_if(speculative, std::back_inserter(work.found), [&](const FeatureContact& ahead) {
+        return std::none_of(
+            work.found.begin(), work.found.begin() + std::ptrdiff_t(touching), [&](const FeatureContact& c) {
+                return c.kind == FeatureKind::vertex && c.source == ahead.source && c.index == ahead.index;
+            });
+    });
     const auto first = static_cast<std::ptrdiff_t>(block.contacts.size());
     for (const FeatureContact& found : work.found) {
         const bool from_a = found.source == Side::a;

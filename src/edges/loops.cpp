@@ -7,10 +7,6 @@ namespace raycontact {
 
 namespace {
 
-// The vector area says which way unless the normals along the loop say otherwise by more than 60 degrees: of flush
-// faces rounding decides where a loop runs, and they add nothing to the sum of normals.
-constexpr double same_way = 0.5;
-
 std::size_t hash_of(const Crossing& c) {
     std::uint64_t h = (std::uint64_t{c.edge} << 32 | c.face) ^ std::uint64_t{c.side} << 63;
     h *= 0x9e3779b97f4a7c15ull;
@@ -121,16 +117,13 @@ void Loops::keep(const Crossing& seed, bool closed) {
 // faces may say otherwise, their sum does not.
 void Loops::measure(Loop& loop) const {
     const Vec3 origin = crossings_[loop.first].point;
-    Vec3 area{}, normals{};
     double runs = 0;
     for (const LoopSegment& s : segments().subspan(loop.first_segment)) {
-        const Vec3 u = crossings_[s.from].point - origin, v = crossings_[s.to].point - origin, along = v - u;
-        area = area + 0.5 * cross(u, v);
-        normals = normals + length(along) * (s.normals[1] - s.normals[0]);
-        runs += dot(along, cross(s.normals[1], s.normals[0]));
+        const Vec3 u = crossings_[s.from].point - origin, v = crossings_[s.to].point - origin;
+        loop.area = loop.area + 0.5 * cross(u, v);
+        runs += dot(v - u, cross(s.normals[1], s.normals[0]));
     }
-    if (runs < 0) area = -1.0 * area;
-    loop.area = length(normals) > 0 && dot(unit(area), unit(normals)) < same_way ? length(area) * unit(normals) : area;
+    if (runs < 0) loop.area = -1.0 * loop.area;
 }
 
 } // namespace raycontact

@@ -3,41 +3,29 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <numeric>
 #include <tuple>
+#include <utility>
 
 namespace raycontact {
 
 namespace {
 
-constexpr double never = std::numeric_limits<double>::infinity();
 // A contact counts beside others of its region from this part of their depth on.
 constexpr double comparable = 0.5;
-// The cross product of two edges is their normal if they are less parallel than this and it does not leave the arc
-// between the normals of either edge's faces by more than this, radians.
-constexpr double least_sine = 0.05, arc = 0.1;
-// ... and is no more than 60 degrees from where the loop points. Otherwise a face's normal serves, if it is no more
-// than 37 degrees from there.
-constexpr double same_way = 0.5, snap = 0.8;
-// Faces of the two bodies that are nearly parallel say nothing about how thin a region is.
-constexpr double parallel = 0.98;
-// Two edges whose normal has no larger part than this along the way of their region are passed over.
-constexpr double sideways = 0.1;
-// Two edges may be so many times as deep as their region is along a face; beside flush faces.
-constexpr double most_deep = 2, most_flush = 1.25;
+// Two edges that pass each other may be so many times as deep as the edge's own way inward is long, where this part of
+// the way to the ridge lies inside: over something round half of it does.
+constexpr double most_times = 2, reached = 0.75;
 // What is no deeper than this, in perturbations, is rounding.
 constexpr double noise = 0.1;
+// A contact whose normal has no larger part than this along the loops' vector area makes the overlap no smaller.
+constexpr double sideways = 0.1;
 constexpr std::size_t most_faces = 64;
-// A ray from a piece begins this part of its half inside.
-constexpr double pull = 1e-3;
-constexpr int most_triangles_around = 256;
 
 // The edge of a face that is nearest to a point of its plane.
 std::uint32_t nearest_edge(const PairMeshes& pair, std::size_t side, std::uint32_t face, const Vec3& point) {
     const ShapeData& shape = pair.shape(side);
     std::uint32_t best = 0;
-    double least = never;
+    double least = std::numeric_limits<double>::infinity();
     for (std::uint32_t k = 0; k < 3; ++k) {
         const Vec3 from = pair.corner(side, face, k), along = pair.corner(side, face, (k + 1) % 3) - from;
         const double size = length(along);
@@ -50,11 +38,9 @@ std::uint32_t nearest_edge(const PairMeshes& pair, std::size_t side, std::uint32
     return edge_of(shape, face, best);
 }
 
-// By how much a unit direction leaves the arc between the normals of an edge's faces, radians.
-double beyond(const Vec3& direction, const Vec3& n, const Vec3& m) {
-    const Vec3 middle = unit(n + m);
-    const auto angle = [&](const Vec3& v) { return std::acos(std::clamp(dot(v, middle), -1.0, 1.0)); };
-    return angle(direction) - angle(n);
+// The way in which a leaves b, of a normal out of the body that a piece is in.
+Vec3 out_of_b(const EdgePiece& piece, const Vec3& normal) {
+    return piece.side == 0 ? normal : -1.0 * normal;
 }
 
 } // namespace
@@ -64,33 +50,39 @@ bool PairEdges::find(const PairMeshes& pair, const NearEdges& near,
                      std::vector<FeatureContact>& found) {
     list_vertices(vertices);
     follow_loops(pair, near);
-    if (crossings().empty()) return false;
-    list_pieces(pair);
-    join_regions(pair);
-    list_regions(pair);
-    pass_edges(pair);
-    const auto before = static_cast<std::ptrdiff_t>(found.size());
-    give_edges(found);
-    all_speak_ = false;
-    give_deep(pair, found);
-    all_speak_ = found.size() == std::size_t(before) && in_contact_.empty();
-    if (all_speak_) give_deep(pair, found);
-    // Two edges have one contact, the deepest.
-    const auto edges = [](const FeatureContact& c) { return std::pair(c.index, c.other); };
-    std::ranges::sort(found.begin() + before, found.end(), {},
-                      [&](const FeatureContact& c) { return std::tuple(edges(c), -c.depth); });
-    const auto same = [&](const FeatureContact& c, const FeatureContact& d) { return edges(c) == edges(d); };
-    found.erase(std::unique(found.begin() + before, found.end(), same), found.end());
+    if (loops_.crossings().empty()) return false;
+    pieces_.list(pair, loops_.crossings());
+    regions_.find(pair, loops_, pieces_, touching_);
+    candidates_.clear();
+    number_ = 0;
+    list_inner_vertices(pair);
+    for (const Effort effort : {Effort::edges_alone, Effort::any_way, Effort::any_edge}) {
+        // Edges within flat faces and valleys speak only for a pair that has no contact at all.
+        if (effort == Effort::any_edge && !(candidates_.empty() && touching_.empty())) break;
+        effort_ = effort;
+        const std::size_t first = effort == Effort::edges_alone ? 0 : candidates_.size();
+        list_ways(pair);
+        leave_out_hidden(first);
+    }
+    give(found);
     return true;
+}
+
+void PairEdges::list_vertices(const std::array<std::span<const kernels::LocalContact>, 2>& vertices) {
+    touching_.clear();
+    for (std::size_t side = 0; side < 2; ++side)
+        for (const kernels::LocalContact& c : vertices[side])
+            touching_.push_back({vertex_of_side(side, c.vertex), double(c.distance) * double(c.facing), c.triangle});
+    std::ranges::sort(touching_, {}, &TouchingVertex::vertex);
 }
 
 // Every loop has been followed once each edge has been asked. Where a vertex is in contact, only those need be that
 // hide much: loops that none of them crosses are left out.
 void PairEdges::follow_loops(const PairMeshes& pair, const NearEdges& near) {
-    const double least = in_contact_.empty() ? -1 : least_hidden * pair.size();
-    const double least_beside = in_contact_.empty() ? -1 : least_hidden_beside * pair.size();
-    const auto is_in_contact = [&](std::size_t side, std::uint32_t vertex) {
-        return std::ranges::binary_search(in_contact_, std::uint64_t{side} << 32 | vertex, {}, &VertexContact::vertex);
+    const double least = touching_.empty() ? -1 : least_hidden * pair.size();
+    const double least_beside = touching_.empty() ? -1 : least_hidden_beside * pair.size();
+    const auto touches = [&](std::size_t side, std::uint32_t vertex) {
+        return std::ranges::binary_search(touching_, vertex_of_side(side, vertex), {}, &TouchingVertex::vertex);
     };
     loops_.clear();
     for (std::size_t side = 0; side < 2; ++side) {
@@ -103,8 +95,7 @@ void PairEdges::follow_loops(const PairMeshes& pair, const NearEdges& near) {
                 edge = candidate.edge;
                 const auto [start, stop] = ends_of(source, edge);
                 const double hides = hidden_by(source, edge);
-                asked = hides > least_beside
-                        || (hides > least && !is_in_contact(side, start) && !is_in_contact(side, stop));
+                asked = hides > least_beside || (hides > least && !touches(side, start) && !touches(side, stop));
             }
             if (!asked) continue;
             face.set(pair, 1 - side, candidate.face);
@@ -113,430 +104,228 @@ void PairEdges::follow_loops(const PairMeshes& pair, const NearEdges& near) {
     }
 }
 
-void PairEdges::list_vertices(const std::array<std::span<const kernels::LocalContact>, 2>& vertices) {
-    in_contact_.clear();
-    for (std::size_t side = 0; side < 2; ++side)
-        for (const kernels::LocalContact& c : vertices[side])
-            in_contact_.push_back({std::uint64_t{side} << 32 | c.vertex, double(c.distance) * double(c.facing)});
-    std::ranges::sort(in_contact_, {}, &VertexContact::vertex);
-}
-
-void PairEdges::list_pieces(const PairMeshes& pair) {
-    pieces_.clear();
-    piece_vertices_.clear();
-    crossed_.clear();
-    by_edge_.resize(crossings().size());
-    std::iota(by_edge_.begin(), by_edge_.end(), 0u);
-    std::ranges::sort(by_edge_, {}, [this](std::uint32_t i) {
-        const Crossing& c = crossings()[i];
-        return std::tie(c.side, c.edge, c.at, c.face);
-    });
-    for (std::size_t begin = 0, end = 0; begin < by_edge_.size(); begin = end) {
-        const std::uint32_t side = crossings()[by_edge_[begin]].side, edge = crossings()[by_edge_[begin]].edge;
-        const auto on_edge = [&](std::uint32_t i) {
-            return crossings()[i].side == side && crossings()[i].edge == edge;
-        };
-        while (end < by_edge_.size() && on_edge(by_edge_[end])) ++end;
-        const auto [start, stop] = ends_of(pair.shape(side), edge);
-        const std::uint64_t of_side = std::uint64_t{side} << 32;
-        crossed_.push_back({of_side | std::min(start, stop), of_side | std::max(start, stop)});
-        if (pair.shape(1 - side).header.closed == 0) continue; // an open mesh has no inside
-        // The piece before crossing k, if it is inside.
-        for (std::size_t k = begin; k <= end; ++k) {
-            Piece piece{side, edge, {k > begin ? by_edge_[k - 1] : NONE, k < end ? by_edge_[k] : NONE}, {}};
-            const auto [enters, leaves] = piece.crossings;
-            if ((enters != NONE && crossings()[enters].leaves) || (leaves != NONE && !crossings()[leaves].leaves))
-                continue;
-            for (std::size_t e = 0; e < 2; ++e) {
-                if (piece.crossings[e] != NONE) {
-                    piece.ends[e] = crossings()[piece.crossings[e]].point;
-                } else {
-                    const std::uint32_t vertex = e == 0 ? start : stop;
-                    piece.ends[e] = pair.vertex(side, vertex);
-                    piece_vertices_.emplace_back(of_side | vertex, piece.crossings[1 - e]);
-                }
-            }
-            pieces_.push_back(piece);
-        }
-    }
-    std::sort(crossed_.begin(), crossed_.end());
-}
-
-void PairEdges::join_regions(const PairMeshes& pair) {
-    // The nodes are the crossings, the vertices in contact, and the other vertices at ends of pieces.
-    const auto first = static_cast<std::uint32_t>(crossings().size());
-    const std::uint32_t first_other = first + static_cast<std::uint32_t>(in_contact_.size());
-    sets_.reset(first_other + piece_vertices_.size());
-    for (const LoopSegment& s : loops_.segments()) sets_.join(s.from, s.to);
-    for (const Piece& piece : pieces_)
-        if (piece.is_through()) sets_.join(piece.crossings[0], piece.crossings[1]);
-    std::sort(piece_vertices_.begin(), piece_vertices_.end());
-    other_vertices_.clear();
-    std::size_t at = 0;
-    for (const auto& [vertex, crossing] : piece_vertices_) {
-        while (at < in_contact_.size() && in_contact_[at].vertex < vertex) ++at;
-        if (at < in_contact_.size() && in_contact_[at].vertex == vertex) {
-            sets_.join(crossing, first + static_cast<std::uint32_t>(at));
-            continue;
-        }
-        if (other_vertices_.empty() || other_vertices_.back() != vertex) other_vertices_.push_back(vertex);
-        sets_.join(crossing, first_other + static_cast<std::uint32_t>(other_vertices_.size() - 1));
-    }
-    node_count_ = first_other + other_vertices_.size();
-    if (in_contact_.size() > 1) join_vertices(pair);
-}
-
-// Vertices in contact with their neighbours, over edges that stay in the other body.
-void PairEdges::join_vertices(const PairMeshes& pair) {
-    for (std::size_t side = 0; side < 2; ++side)
-        if (node_at_[side].size() < pair.shape(side).points.size())
-            node_at_[side].resize(pair.shape(side).points.size(), NONE);
-    for (const VertexContact& contact : in_contact_) node_at_[contact.side()][contact.number()] = node_of(contact);
-    for (const VertexContact& contact : in_contact_) {
-        const std::size_t side = contact.side();
-        const std::uint32_t own = contact.number();
-        const ShapeData& shape = pair.shape(side);
-        const auto join = [&](std::uint32_t other) {
-            const std::uint32_t node = node_at_[side][other];
-            if (other < own || node == NONE) return; // below: joined there
-            if (sets_.of(node) == sets_.of(node_of(contact))) return;
-            const std::uint64_t vertex = std::uint64_t{side} << 32 | other;
-            if (!std::binary_search(crossed_.begin(), crossed_.end(), std::array{contact.vertex, vertex}))
-                sets_.join(node, node_of(contact));
-        };
-        // Around the vertex; where a border ends that, the other way round, too.
-        const std::uint32_t begin = shape.vertex_triangle[own];
-        std::uint32_t t = begin;
-        for (const std::size_t way : {0u, 2u}) {
-            for (int count = 0; count < most_triangles_around && t != NONE; ++count) {
-                const auto& corners = shape.mesh.triangles[t];
-                const std::size_t c = corners[0] == own ? 0 : corners[1] == own ? 1 : 2;
-                join(corners[(c + (way == 0 ? 2 : 1)) % 3]); // the other corner is the next triangle's, or a border's
-                const std::uint32_t next = shape.neighbours[t][(c + way) % 3];
-                if (next == NONE) join(corners[(c + (way == 0 ? 1 : 2)) % 3]);
-                t = next;
-                if (t == begin) break;
-            }
-            if (t != NONE) break;
-            t = begin;
-        }
-    }
-    for (const VertexContact& contact : in_contact_) node_at_[contact.side()][contact.number()] = NONE;
-}
-
-// Keeps the order within a region.
-void PairEdges::sort_by_region(std::vector<std::pair<std::uint32_t, Vec3>>& list) {
-    if (regions_.size() < 2) return;
-    firsts_.assign(regions_.size() + 1, 0);
-    for (const auto& [region, point] : list) ++firsts_[region + 1];
-    std::partial_sum(firsts_.begin(), firsts_.end(), firsts_.begin());
-    sorted_.resize(list.size());
-    for (const auto& one : list) sorted_[firsts_[one.first]++] = one;
-    list.swap(sorted_);
-}
-
-void PairEdges::list_regions(const PairMeshes& pair) {
-    regions_.clear();
-    points_.clear();
-    faces_.clear();
-    region_of_.assign(node_count_, NONE);
-    for (std::uint32_t i = 0; i < region_of_.size(); ++i) {
-        const std::uint32_t root = sets_.of(i); // the lowest, so seen already
-        if (root == i) {
-            region_of_[i] = static_cast<std::uint32_t>(regions_.size());
-            regions_.emplace_back();
-        } else {
-            region_of_[i] = region_of_[root];
-        }
-    }
-    for (const Loop& loop : loops_.loops()) {
-        Region& region = regions_[region_of_[loop.first]];
-        region.area = region.area + loop.area;
-        region.area_sum += length(loop.area);
-    }
-    for (std::uint32_t i = 0; i < crossings().size(); ++i) points_.emplace_back(region_of_[i], crossings()[i].point);
-    const auto place = [&](std::uint32_t node, std::uint64_t vertex) {
-        points_.emplace_back(region_of_[node], pair.vertex(vertex >> 32, static_cast<std::uint32_t>(vertex)));
-    };
-    for (const VertexContact& c : in_contact_) {
-        place(node_of(c), c.vertex);
-        Region& region = regions_[region_of_[node_of(c)]];
-        region.deepest = std::max(region.deepest, c.depth);
-        region.told = region.deepest;
-        region.speaks = true;
-    }
-    for (std::size_t i = 0; i < other_vertices_.size(); ++i)
-        place(static_cast<std::uint32_t>(node_count_ - other_vertices_.size() + i), other_vertices_[i]);
-    for (const LoopSegment& s : loops_.segments()) {
-        Region& region = regions_[region_of_[s.from]];
-        const double along = length(crossings()[s.to].point - crossings()[s.from].point);
-        region.loop_length += along;
-        if (dot(s.normals[0], s.normals[1]) > parallel) {
-            region.flush_length += along;
-            continue;
-        }
-        faces_.emplace_back(region_of_[s.from], s.normals[1]);
-        faces_.emplace_back(region_of_[s.from], -1.0 * s.normals[0]);
-    }
-    sort_by_region(points_);
-    sort_by_region(faces_);
-    std::uint32_t point = 0, face = 0;
-    for (std::uint32_t r = 0; r < regions_.size(); ++r) {
-        Region& region = regions_[r];
-        region.first_point = point;
-        while (point < points_.size() && points_[point].first == r) ++point;
-        region.end_point = point;
-        region.first_face = face;
-        while (face < faces_.size() && faces_[face].first == r) ++face;
-        region.end_face = face;
-    }
-}
-
-PairEdges::Range PairEdges::range(const Region& region, const Vec3& normal) const {
-    Range range{never, -never};
-    for (std::uint32_t i = region.first_point; i < region.end_point; ++i) range.add(dot(points_[i].second, normal));
-    return range;
-}
-
-// Whether a region is thinner than `limit` along a normal of a face that its loops cross.
-bool PairEdges::is_thinner(const Region& region, double limit) const {
-    for (std::uint32_t i = region.first_face; i < region.end_face; ++i) {
-        Range range{never, -never};
-        std::uint32_t k = region.first_point;
-        for (; k < region.end_point && !(range.extent() >= limit); ++k)
-            range.add(dot(points_[k].second, faces_[i].second));
-        if (range.extent() < limit) return true;
-    }
-    return false;
-}
-
-// The way in which a region's a leaves b, of regions that are not pierced: as its loops' area, or by a face along which
-// it is less than half as deep.
-const Vec3& PairEdges::way_of(const PairMeshes& pair, Region& region) const {
-    if (region.way == Vec3{}) region.way = find_way(pair, region);
-    return region.way;
-}
-
-Vec3 PairEdges::find_way(const PairMeshes& pair, const Region& region) const {
-    const Vec3 way = unit(region.area);
-    if (!is_thinner(region, 0.5 * range(region, way).extent() - 5 * pair.perturbation())) return way;
-    double thin = never;
-    for (std::uint32_t i = region.first_face; i < region.end_face; ++i)
-        thin = std::min(thin, range(region, faces_[i].second).extent());
-    Vec3 by{};
-    double best = -never;
-    for (std::uint32_t i = region.first_face; i < region.end_face; ++i) {
-        const Vec3& n = faces_[i].second;
-        if (dot(n, way) > best && range(region, n).extent() <= 1.1 * thin + pair.perturbation()) {
-            best = dot(n, way);
-            by = n;
-        }
-    }
-    return by;
-}
-
-void PairEdges::pass_edges(const PairMeshes& pair) {
-    passing_.clear();
-    for (const Loop& loop : loops_.loops()) {
-        // Edges within a flat face are passed over.
-        std::uint32_t first = NONE, last = NONE;
-        const auto visit = [&](std::uint32_t c) {
-            const Crossing& now = crossings()[c];
-            if (last != NONE && crossings()[last].side != now.side)
-                pass(pair, loop, now.side == 0 ? c : last, now.side == 0 ? last : c);
-            last = c;
-        };
-        for (std::uint32_t c = loop.first; c < loop.first + loop.count; ++c) {
-            if (!is_sharp(pair.shape(crossings()[c].side), crossings()[c].edge)) continue;
-            if (first == NONE) first = c;
-            visit(c);
-        }
-        if (loop.is_closed() && first != NONE && first != last) visit(first);
-    }
-}
-
-void PairEdges::pass(const PairMeshes& pair, const Loop& loop, std::uint32_t of_a, std::uint32_t of_b) {
-    const Crossing &x = crossings()[of_a], &y = crossings()[of_b];
-    const std::uint32_t number = region_of_[of_a];
-    Region& region = regions_[number];
-    if (region.is_pierced()) return;
-    const double least = comparable * region.deepest;
-    const Vec3 &p = x.point, &q = y.point;
-    if (!(length(q - p) >= least)) return;
-    const ShapeData &a = pair.shape(0), &b = pair.shape(1);
-    if (!is_convex(a, x.edge) || !is_convex(b, y.edge)) return;
-    const Vec3 way = unit(loop.area);
-    const auto normals = [&](std::size_t side, std::uint32_t edge) {
-        const auto [own, across] = faces_of(pair.shape(side), edge);
-        const Vec3 n = pair.normal(side, own);
-        return std::array{n, across == NONE ? n : pair.normal(side, across)};
-    };
-    const auto na = normals(0, x.edge), nb = normals(1, y.edge);
-    const auto [a0, a1] = ends_of(a, x.edge);
-    const auto [b0, b1] = ends_of(b, y.edge);
-    const Vec3 start = pair.vertex(0, a0), whole = pair.vertex(0, a1) - start;
-    const Vec3 ea = unit(whole), eb = unit(pair.vertex(1, b1) - pair.vertex(1, b0));
-    Vec3 n = cross(ea, eb);
-    const double sine = length(n);
-    n = unit(n);
-    if (dot(n, nb[0] + nb[1]) < 0) n = -1.0 * n;
-    const bool own = sine > least_sine && dot(n, way) >= same_way && beyond(n, nb[0], nb[1]) < arc
-                     && beyond(-1.0 * n, na[0], na[1]) < arc;
-    // Beside flush faces a loop's area leans, and two edges may pass each other sideways.
-    if (own && dot(n, way_of(pair, region)) <= sideways) return;
-    Vec3 point = p;
-    if (own) {
-        // The point of a's edge that is nearest to b's.
-        const Vec3 w = p - q;
-        const double cosine = dot(ea, eb), t = (cosine * dot(eb, w) - dot(ea, w)) / (sine * sine);
-        // ... of the part that is inside b.
-        const double size = length(whole), here = x.at * size;
-        point = start + std::clamp(dot(p + t * ea - start, ea), x.leaves ? 0 : here, x.leaves ? here : size) * ea;
-    } else {
-        // Of flush edges, say: a face's normal.
-        double best = snap;
-        n = {};
-        for (const Vec3& face : {nb[0], nb[1], -1.0 * na[0], -1.0 * na[1]})
-            if (dot(face, way) > best) {
-                best = dot(face, way);
-                n = face;
-            }
-    }
-    double depth = dot(q - p, n);
-    // Nearly parallel edges are pierced far apart, and only what lies across them counts.
-    if (!own) depth = std::min({depth, length(cross(q - p, ea)), length(cross(q - p, eb))});
-    if (!(depth > noise * pair.perturbation()) || depth < least) return;
-    if (is_thinner(region, depth / (region.is_flush() ? most_flush : most_deep) - 5 * pair.perturbation())) return;
-    passing_.push_back({number, {Side::a, FeatureKind::edges, x.edge, y.edge, point, n, depth}});
-}
-
-// Two edges that pass each other more than once have the shallowest contact.
-void PairEdges::give_edges(std::vector<FeatureContact>& found) {
-    std::ranges::sort(passing_, {},
-                      [](const Passing& p) { return std::tuple(p.contact.index, p.contact.other, p.contact.depth); });
-    for (std::size_t i = 0; i < passing_.size(); ++i) {
-        const FeatureContact& c = passing_[i].contact;
-        if (i > 0 && passing_[i - 1].contact.index == c.index && passing_[i - 1].contact.other == c.other) continue;
-        Region& region = regions_[passing_[i].region];
-        region.told = std::max(region.told, c.depth);
-        region.speaks = true;
-        found.push_back(c);
-    }
-}
-
-// Sharp and convex edges speak; concave ones and those within flat faces only where nothing else does.
-bool PairEdges::speaks(const PairMeshes& pair, const Piece& piece) const {
+bool PairEdges::speaks(const PairMeshes& pair, const EdgePiece& piece) const {
     const ShapeData& shape = pair.shape(piece.side);
-    return all_speak_ || (is_sharp(shape, piece.edge) && is_convex(shape, piece.edge));
+    return effort_ == Effort::any_edge || (is_sharp(shape, piece.edge) && is_convex(shape, piece.edge));
 }
 
-// How far a point of a piece goes along the way, until its body is out of the other there; from a little inside.
-MeshHit PairEdges::exit_along(const PairMeshes& pair, const Piece& piece, const Vec3& point, const Vec3& way) {
-    const std::size_t other = 1 - piece.side;
-    const Vec3 from = point + pull * (0.5 * (piece.ends[0] + piece.ends[1]) - point);
-    const Vec3 along = pair.direction_in(other, piece.side == 0 ? way : -1.0 * way);
-    const MeshHit hit = closest_hit(pair.shape(other), {pair.point_in(other, from), along, 0, never});
-    return hit.face != NONE && hit.from_inside ? hit : MeshHit{0, NONE, false};
+// What is less than half as deep as the region's deepest contact along that one's normal comes out with it.
+bool PairEdges::is_hidden(const Region& region, double depth, const Vec3& way) const {
+    return depth < comparable * region.deepest * std::max(0.0, dot(way, region.normal));
 }
 
-// Adds the point of a piece, with the edge of the other body nearest to where it comes out.
-void PairEdges::add_deep(const PairMeshes& pair, const Piece& piece, const Vec3& point, const Vec3& way, double depth,
-                         const MeshHit& hit) {
-    if (!(depth > noise * pair.perturbation())) return;
+void PairEdges::list_ways(const PairMeshes& pair) {
+    const auto regions = regions_.all();
+    for (const EdgePiece& piece : pieces_.all()) {
+        const Region& region = regions[region_of(piece)];
+        if (region.is_pierced() || (effort_ != Effort::edges_alone && region.speaks)) continue;
+        if (!speaks(pair, piece)) continue;
+        if (effort_ == Effort::edges_alone)
+            list_way(pair, piece);
+        else
+            list_way_of_region(pair, piece);
+    }
+    for (std::uint32_t r = 0; r < regions.size(); ++r)
+        if (regions[r].is_pierced() && !regions[r].speaks) list_pierced(pair, r);
+}
+
+// The shorter one of a piece's ways; but a ridge that it passes counts up to twice the way inward.
+void PairEdges::list_way(const PairMeshes& pair, const EdgePiece& piece) {
+    if (goes_with_vertex(pair, piece)) return;
+    const bool through = piece.is_through();
+    const WayOut way = through ? way_over_ridge(pair, piece, loops_.crossings())
+                               : way_past_face(pair, piece, loops_.crossings()[piece.crossing()].face);
+    const Region& region = regions_.all()[region_of(piece)];
+    if (way.exists() && is_hidden(region, way.depth, out_of_b(piece, way.normal))) return;
+    const Vec3 direction = inward_of(pair, piece);
+    const WayOut inward = way_along(pair, piece, piece.middle(), direction);
+    if (inward.distance < way.distance) {
+        const bool passes = through && way.in_arc && way.distance <= most_times * inward.distance
+                            && exit_along(pair, piece, way.point, way.normal).distance > reached * way.distance;
+        if (!passes) return list_way_along(pair, piece, direction, inward);
+    }
+    if (way.exists() && way.in_arc && (through || touching(pair, piece) == nullptr)) add(pair, piece, way);
+}
+
+// Where no piece has a way of its own: that of the region.
+void PairEdges::list_way_of_region(const PairMeshes& pair, const EdgePiece& piece) {
+    const Vec3 out = unit(regions_.all()[region_of(piece)].area), direction = piece.side == 0 ? out : -1.0 * out;
+    const WayOut middle = way_along(pair, piece, piece.middle(), direction);
+    if (middle.exists()) list_way_along(pair, piece, direction, middle);
+}
+
+// An edge on a face stands on its ends, one on something round on its middle.
+void PairEdges::list_way_along(const PairMeshes& pair, const EdgePiece& piece, const Vec3& direction,
+                               const WayOut& middle) {
+    std::array<WayOut, 2> ends;
+    std::array<std::uint32_t, 2> others;
+    for (std::size_t e = 0; e < 2; ++e) {
+        ends[e] = way_along(pair, piece, piece.ends[e], direction);
+        if (!ends[e].exists() || ends[e].depth < comparable * middle.depth || middle.depth < comparable * ends[e].depth)
+            return add(pair, piece, middle);
+        others[e] = piece.crossings[e] == NONE ? edge_past(pair, piece, ends[e]) : edge_at(pair, piece, e);
+    }
+    if (others[0] == others[1]) return add(pair, piece, middle);
+    for (std::size_t e = 0; e < 2; ++e) add(pair, piece, ends[e], others[e]);
+}
+
+// Vertices that are inside by the crossings, though the rays of float32 found nothing, as where faces are flush: their
+// rays are cast again from where the crossings have them.
+void PairEdges::list_inner_vertices(const PairMeshes& pair) {
+    const std::size_t count = touching_.size();
+    std::uint64_t last = ~std::uint64_t{0};
+    inner_.clear();
+    for (const EdgePiece& piece : pieces_.all())
+        if (!piece.is_through() && touching(pair, piece) == nullptr)
+            inner_.emplace_back(vertex_of(pair, piece), &piece);
+    std::ranges::sort(inner_);
+    for (const auto& [vertex, piece] : inner_) {
+        if (std::exchange(last, vertex) == vertex) continue;
+        const WayOut way = way_of_vertex(pair, *piece);
+        if (!way.exists() || !leads_out(pair, *piece, way)) continue;
+        const bool of_a = piece->side == 0;
+        const std::size_t other = 1 - piece->side;
+        const TouchingVertex touching{vertex, way.depth, way.face};
+        candidates_.push_back({region_of(*piece),
+                               number_++,
+                               out_of_b(*piece, way.normal),
+                               {of_a ? Side::a : Side::b, FeatureKind::vertex, touching.number(), way.face,
+                                pair.point_in(other, way.point), pair.direction_in(other, way.normal), way.depth}});
+        touching_.push_back(touching);
+    }
+    if (touching_.size() > count) std::ranges::sort(touching_, {}, &TouchingVertex::vertex);
+}
+
+// The vertex in contact at the end of a piece; null: none is.
+const TouchingVertex* PairEdges::touching(const PairMeshes& pair, const EdgePiece& piece) const {
+    const std::uint64_t vertex = vertex_of(pair, piece);
+    const auto at = std::ranges::lower_bound(touching_, vertex, {}, &TouchingVertex::vertex);
+    return at != touching_.end() && at->vertex == vertex ? &*at : nullptr;
+}
+
+// Whether a way is deeper than rounding, and makes the overlap smaller.
+bool PairEdges::leads_out(const PairMeshes& pair, const EdgePiece& piece, const WayOut& way) {
+    const Region& region = regions_.all()[region_of(piece)];
+    return way.depth > noise * pair.perturbation()
+           && (region.is_pierced() || dot(out_of_b(piece, way.normal), unit(region.area)) > sideways);
+}
+
+// Whether a piece comes out with the vertex in contact at its end. Of an edge that lies on a face the other end, too,
+// is a contact: there it passes an edge.
+bool PairEdges::goes_with_vertex(const PairMeshes& pair, const EdgePiece& piece) {
+    if (piece.is_through()) return false;
+    const TouchingVertex* const at = touching(pair, piece);
+    if (at == nullptr) return false;
+    if (hidden_by(pair.shape(piece.side), piece.edge) < least_hidden_beside * pair.size()) return true;
+    const Vec3 normal = pair.normal(1 - piece.side, at->face);
+    const double most = 1.1 * at->depth + 10 * pair.perturbation();
+    const MeshHit middle = exit_along(pair, piece, piece.middle(), normal);
+    if (middle.face == NONE || middle.distance > most) return false;
+    const std::size_t far = 1 - piece.vertex_end();
+    const MeshHit end = exit_along(pair, piece, piece.ends[far], normal);
+    if (end.face != NONE && end.distance <= most && end.distance >= comparable * at->depth)
+        add(pair, piece, {end.distance, end.distance, normal, end.face, piece.ends[far]}, edge_at(pair, piece, far));
+    return true;
+}
+
+// Where a's surface is when a piece of b has come out.
+Vec3 PairEdges::point_past(const PairMeshes& pair, const WayOut& way) {
+    const auto corner = [&](std::size_t k) { return pair.corner(0, way.face, k); };
+    return nearest_point(way.point + way.depth * way.normal, corner(0), corner(1), corner(2));
+}
+
+// The edge of the other body nearest to where a piece comes out.
+std::uint32_t PairEdges::edge_past(const PairMeshes& pair, const EdgePiece& piece, const WayOut& way) {
+    return nearest_edge(pair, 1 - piece.side, way.face, way.point + way.depth * way.normal);
+}
+
+// The edge of the face that a piece crosses at an end, nearest to there.
+std::uint32_t PairEdges::edge_at(const PairMeshes& pair, const EdgePiece& piece, std::size_t end) const {
+    const Crossing& crossing = loops_.crossings()[piece.crossings[end]];
+    return nearest_edge(pair, 1 - piece.side, crossing.face, crossing.point);
+}
+
+void PairEdges::add(const PairMeshes& pair, const EdgePiece& piece, const WayOut& way) {
+    add(pair, piece, way, edge_past(pair, piece, way));
+}
+
+void PairEdges::add(const PairMeshes& pair, const EdgePiece& piece, const WayOut& way, std::uint32_t other) {
+    if (!leads_out(pair, piece, way)) return;
     const bool of_a = piece.side == 0;
-    const std::uint32_t other = nearest_edge(pair, 1 - piece.side, hit.face, point + (of_a ? depth : -depth) * way);
-    deep_.push_back({Side::a, FeatureKind::edges, of_a ? piece.edge : other, of_a ? other : piece.edge,
-                     of_a ? point : point - depth * way, way, depth});
-}
-
-// Where round bodies cross, a region's middle is deeper than its border: the middles of its pieces, by a ray. Of a
-// region without any contact the ends, too.
-void PairEdges::list_deep(const PairMeshes& pair, std::uint32_t number) {
-    Region& region = regions_[number];
-    if (!(region.told < comparable * range(region, unit(region.area)).extent())) return;
-    Vec3 way = way_of(pair, region);
-    Range along = range(region, way);
-    if (!(region.told < comparable * along.extent())) return;
-    // Beside flush faces a loop's area leans: then along the face that looks most that way.
-    double best = snap;
-    const double deep = along.extent();
-    for (std::uint32_t i = region.first_face; i < region.end_face && region.is_flush(); ++i) {
-        const Vec3& n = faces_[i].second;
-        const double facing = dot(n, way_of(pair, region));
-        if (!(facing > best)) continue;
-        const Range by_face = range(region, n);
-        if (!(by_face.extent() <= deep)) continue;
-        best = facing;
-        way = n;
-        along = by_face;
-    }
-    const auto ask = [&](const Piece& piece, const Vec3& point) {
-        const double at = dot(point, way), most = piece.side == 0 ? along.high - at : at - along.low;
-        if (!(most > region.told)) return;
-        const MeshHit hit = exit_along(pair, piece, point, way);
-        double depth = std::min(most, hit.distance);
-        if (!(depth > region.told)) return;
-        const auto [own, across] = faces_of(pair.shape(piece.side), piece.edge);
-        Vec3 inward = pair.normal(piece.side, own);
-        if (across != NONE) inward = inward + pair.normal(piece.side, across);
-        inward = unit(inward);
-        const MeshHit in = exit_along(pair, piece, point, piece.side == 0 ? -1.0 * inward : inward);
-        if (in.face != NONE) depth = std::min(depth, in.distance);
-        if (depth > region.told) add_deep(pair, piece, point, way, depth, hit);
-    };
-    for (const Piece& piece : pieces_) {
-        if (region_of(piece) != number || !speaks(pair, piece)) continue;
-        if (piece.is_through()) ask(piece, 0.5 * (piece.ends[0] + piece.ends[1]));
-        if (region.speaks) continue;
-        for (const Vec3& end : piece.ends) ask(piece, end);
-    }
+    const Vec3 normal = out_of_b(piece, way.normal);
+    candidates_.push_back({region_of(piece),
+                           number_++,
+                           normal,
+                           {Side::a, FeatureKind::edges, of_a ? piece.edge : other, of_a ? other : piece.edge,
+                            of_a ? way.point : point_past(pair, way), normal, way.depth}});
 }
 
 // A body pierced through: the loops on either side cancel, and say nothing. Of the normals of the faces that they cross
 // the one along which the pieces are out soonest.
 void PairEdges::list_pierced(const PairMeshes& pair, std::uint32_t number) {
     constexpr Vec3 preferred{0.31, 0.53, 0.79}; // of two ways alike always the same, whatever rounding does
-    const Region& region = regions_[number];
+    const auto exit = [&](const EdgePiece& piece, const Vec3& end, const Vec3& way) {
+        return exit_along(pair, piece, end, piece.side == 0 ? way : -1.0 * way);
+    };
+    const auto counts = [&](const EdgePiece& piece) { return region_of(piece) == number && speaks(pair, piece); };
     Vec3 way{};
-    double least = never;
+    double least = std::numeric_limits<double>::infinity();
     asked_.clear();
-    for (std::uint32_t i = region.first_face; i < region.end_face && asked_.size() < most_faces; ++i)
-        for (const Vec3& n : {faces_[i].second, -1.0 * faces_[i].second}) {
-            if (std::any_of(asked_.begin(), asked_.end(), [&](const Vec3& m) { return dot(n, m) > 0.9999; })) continue;
-            asked_.push_back(n);
-            double most = 0;
-            for (const Piece& piece : pieces_) {
-                if (region_of(piece) != number || !speaks(pair, piece)) continue;
-                for (const Vec3& end : piece.ends) most = std::max(most, exit_along(pair, piece, end, n).distance);
-                if (most > 1.001 * least) break;
-            }
-            if (!(most > 0)) continue;
-            if (most < 0.999 * least || (most <= 1.001 * least && dot(n, preferred) > dot(way, preferred))) {
-                way = n;
-                least = std::min(most, least);
-            }
+    const auto ask = [&](const Vec3& n) {
+        if (std::ranges::any_of(asked_, [&](const Vec3& m) { return dot(n, m) > 0.9999; })) return;
+        asked_.push_back(n);
+        double most = 0;
+        for (const EdgePiece& piece : pieces_.all()) {
+            if (!counts(piece)) continue;
+            for (const Vec3& end : piece.ends) most = std::max(most, exit(piece, end, n).distance);
+            if (most > 1.001 * least) return;
         }
+        if (!(most > 0)) return;
+        if (most < 0.999 * least || dot(n, preferred) > dot(way, preferred)) {
+            way = n;
+            least = std::min(most, least);
+        }
+    };
+    for (const LoopSegment& s : loops_.segments()) {
+        if (regions_.of_crossing(s.from) != number) continue;
+        for (const Vec3& n : {s.normals[1], -1.0 * s.normals[1], -1.0 * s.normals[0], s.normals[0]}) ask(n);
+        if (asked_.size() >= most_faces) break;
+    }
     if (way == Vec3{}) return;
-    for (const Piece& piece : pieces_) {
-        if (region_of(piece) != number || !speaks(pair, piece)) continue;
+    for (const EdgePiece& piece : pieces_.all()) {
+        if (!counts(piece)) continue;
         for (const Vec3& end : piece.ends) {
-            const MeshHit hit = exit_along(pair, piece, end, way);
-            add_deep(pair, piece, end, way, hit.distance, hit);
+            const MeshHit hit = exit(piece, end, way);
+            if (hit.face != NONE)
+                add(pair, piece, {hit.distance, hit.distance, piece.side == 0 ? way : -1.0 * way, hit.face, end});
         }
     }
 }
 
-void PairEdges::give_deep(const PairMeshes& pair, std::vector<FeatureContact>& found) {
-    for (std::uint32_t r = 0; r < regions_.size(); ++r) {
-        deep_.clear();
-        if (!regions_[r].is_pierced())
-            list_deep(pair, r);
-        else if (!regions_[r].speaks)
-            list_pierced(pair, r);
-        double most = 0;
-        for (const FeatureContact& c : deep_) most = std::max(most, c.depth);
-        for (const FeatureContact& c : deep_)
-            if (c.depth >= comparable * most) found.push_back(c);
+// Of the candidates from the first one on; each may hide others.
+void PairEdges::leave_out_hidden(std::size_t first) {
+    const auto regions = regions_.all();
+    const auto added = std::span(candidates_).subspan(first);
+    for (const Candidate& c : added) regions[c.region].tell(c.contact.depth, c.normal);
+    const auto is_out = [&](const Candidate& c) { return is_hidden(regions[c.region], c.contact.depth, c.normal); };
+    candidates_.erase(
+        std::remove_if(candidates_.begin() + static_cast<std::ptrdiff_t>(first), candidates_.end(), is_out),
+        candidates_.end());
+}
+
+// Two edges have one contact, the deepest; of equally deep ones, whatever rounding says, the first.
+void PairEdges::give(std::vector<FeatureContact>& found) {
+    const auto key = [](const Candidate& c) {
+        return std::tuple(c.contact.kind, c.contact.source, c.contact.index, c.contact.other);
+    };
+    std::ranges::sort(candidates_, {}, [&](const Candidate& c) { return std::tuple(key(c), c.number); });
+    const Candidate* last = nullptr;
+    for (const Candidate& c : candidates_) {
+        if (last == nullptr || key(c) != key(*last))
+            found.push_back(c.contact);
+        else if (c.contact.depth > (1 + 1e-6) * found.back().depth)
+            found.back() = c.contact;
+        last = &c;
     }
 }
 

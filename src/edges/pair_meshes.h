@@ -47,7 +47,7 @@ public:
     Vec3 vertex(std::size_t side, std::uint32_t v) const {
         const ShapeData& own = *shapes_[side];
         if (side == 0) return a_in_b_.vertex(v);
-        return own.point(v) - perturbation() * (own.perturbations[v] + 2.0 * own.vertex_normals[v]);
+        return own.point(v) - perturbation() * (own.perturbations[v] + 4.0 * own.vertex_normals[v]);
     }
     Vec3 corner(std::size_t side, std::uint32_t face, std::size_t k) const {
         return vertex(side, shapes_[side]->mesh.triangles[face][k]);
@@ -57,6 +57,8 @@ public:
         const Vec3 n = unit(area_normal(*shapes_[side], face));
         return side == 0 ? a_in_b_.turned(n) : n;
     }
+    /// A direction of a body's own frame, in that of the pair.
+    Vec3 direction_from(std::size_t side, const Vec3& d) const { return side == 0 ? a_in_b_.turned(d) : d; }
     /// A point or a direction, in a body's own frame.
     Vec3 point_in(std::size_t side, const Vec3& p) const { return side == 0 ? a_in_b_.back(p) : p; }
     Vec3 direction_in(std::size_t side, const Vec3& d) const {

@@ -21,6 +21,7 @@ public:
         parents_.push_back(static_cast<std::uint32_t>(parents_.size()));
         return parents_.back();
     }
+    std::size_t size() const { return parents_.size(); } ///< how many numbers
     std::uint32_t of(std::uint32_t i) {
         while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
         return i;

@@ -138,17 +138,15 @@ TEST(assemblies, flush_parts) {
     const Depths all = of_flush_pairs(flush_pair, flush_kinds, 2100);
     all.print("flush parts");
     EXPECT_EQ(all.without, 0u);
-    EXPECT_LE(all.deep, 2u) << all.words;
-    EXPECT_EQ(all.far, 0u) << all.words;
+    EXPECT_EQ(all.deep, 0u) << all.words;
 }
 
-// Faces on faces that look the other way cross each other anywhere, as rounding has it. Beyond what flush parts
-// promise: the bound is what was reached at first.
+// Faces on faces that look the other way cross each other anywhere, as rounding has it.
 TEST(assemblies, fitted_parts) {
     const Depths all = of_flush_pairs(fitted_pair, fitted_kinds, 600);
     all.print("fitted parts");
     EXPECT_EQ(all.without, 0u);
-    EXPECT_LE(all.deep, 48u) << all.words;
+    EXPECT_EQ(all.deep, 0u) << all.words;
 }
 
 struct Plates {
@@ -571,10 +569,11 @@ TEST(assemblies, pushes) {
         "[ counts   ] pushes: of %zu pairs apart after 1, 2, 3, 5, 12: %zu %zu %zu %zu %zu; mean way %.3g of the "
         "smaller; %zu without a contact on the way; %.3g contacts a pair at first\n",
         pairs, free[0], free[1], free[2], free[3], free[4], way, stopped, double(contacts_first) / wanted);
-    // The prototype of the rule, which asks short edges, too, reached 521, 919, 1081, 1204 and 1283: 1.5 % below.
-    constexpr std::array<std::size_t, 5> least{513, 905, 1065, 1186, 1264};
+    // 1 % below what the rule reached at first: 530, 1030, 1206, 1308 and 1357.
+    constexpr std::array<std::size_t, 5> least{525, 1020, 1194, 1295, 1343};
     for (std::size_t k = 0; k < pushes.size(); ++k) EXPECT_GE(free[k], least[k]) << pushes[k] << " pushes";
-    EXPECT_LE(way, 0.26);
+    EXPECT_LE(way, 0.27);
+    EXPECT_LE(stopped, 3u); // some perturbations deep
 }
 
 } // namespace

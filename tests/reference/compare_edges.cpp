@@ -111,12 +111,16 @@ bool same_vertices(const std::vector<ReferenceContact>& expected, std::span<cons
 void compare_edges(const Solid& a, const Pose& pose_a, const Solid& b, const Pose& pose_b,
                    std::span<const Contact> contacts, EdgeComparison& sum, Direction direction) {
     ++sum.pairs;
-    if (!same_vertices(find_contacts(a, pose_a, b, pose_b), contacts, direction)) {
+    const auto of_edges = find_edges(a, pose_a, b, pose_b, direction);
+    auto vertices = find_contacts(a, pose_a, b, pose_b);
+    for (const ReferenceContact& c : of_edges)
+        if (c.kind == FeatureKind::vertex) vertices.push_back(c);
+    if (!same_vertices(vertices, contacts, direction)) {
         ++sum.pairs_excused;
         return;
     }
     const double size = std::max(a.diagonal, b.diagonal);
-    const Answers expected = answers(find_edges(a, pose_a, b, pose_b, direction));
+    const Answers expected = answers(of_edges);
     const Answers found = answers(contacts);
     sum.contacts += expected.size();
     std::vector<Key> different;

@@ -36,21 +36,26 @@ double angle(const Vec3& p, const Vec3& q) {
     return std::atan2(length(cross(p, q)), dot(p, q));
 }
 
+struct VertexContact {
+    double depth;
+    std::uint32_t face; ///< of the other body
+};
+
 // A body of the pair, in the frame in which all is decided: that of b, about its centre.
 struct Body {
     const Solid& solid;
     Pose pose; ///< in that frame
     std::vector<Edge> edges;
-    std::vector<std::vector<const Edge*>> around; ///< each face
-    std::vector<Vec3> vertices, normals;          ///< moved by a perturbation; of faces
-    std::map<std::uint32_t, double> contact;      ///< vertices in contact: their depth
+    std::vector<std::vector<const Edge*>> around;   ///< each face
+    std::vector<Vec3> vertices, normals;            ///< moved by a perturbation; of faces
+    std::map<std::uint32_t, VertexContact> contact; ///< vertices in contact
     RayCaster caster;
 
-    Body(const Solid& s, const Pose& p, double perturbation, double shaken)
+    Body(const Solid& s, const Pose& p, double inward, double shaken) // metres
         : solid(s), pose(p), edges(edges_of(s)), around(s.triangles.size()), caster(s) {
         for (std::uint32_t v = 0; v < s.vertices.size(); ++v)
             vertices.push_back(p.translation
-                               + rotate(p, s.vertices[v] + perturbation * (shaken * shake(v) - s.vertex_normals[v])));
+                               + rotate(p, s.vertices[v] + shaken * shake(v) - inward * s.vertex_normals[v]));
         for (const Vec3& n : s.face_normals) normals.push_back(rotate(p, n));
         for (const Edge& e : edges)
             for (const std::uint32_t f : e.faces)
@@ -105,48 +110,41 @@ struct Loop {
 struct Piece {
     std::size_t side;
     const Edge* edge;
-    std::size_t crossing;
+    std::size_t crossing; ///< where it is cut; one that goes through, where it leaves: the one before enters
     Vec3 ends[2];
     bool through;
+    std::uint32_t vertex = none; ///< at its end, if it does not go through
+    Vec3 middle() const { return 0.5 * (ends[0] + ends[1]); }
 };
 
 struct Region {
-    Vec3 area;                              ///< S
-    double areas = 0, whole = 0, flush = 0; ///< lengths of S; of loops; of those between flush faces
-    double deepest = 0, told = 0;           ///< vertex; contact
+    Vec3 area;                     ///< S
+    double areas = 0, deepest = 0; ///< lengths of S; contact
+    Vec3 normal;                   ///< of the deepest contact, out of b
     bool speaks = false;
-    std::vector<Vec3> points, faces;
+    std::vector<Vec3> faces;
 
     bool pierced() const { return length(area) <= areas / 4; }
-    double highest(const Vec3& n) const {
-        double high = -inf;
-        for (const Vec3& p : points) high = std::max(high, dot(p, n));
-        return high;
+    void tell(double depth, const Vec3& way) {
+        speaks = true;
+        if (depth > deepest) deepest = depth, normal = way;
     }
-    double depth(const Vec3& n) const { return highest(n) + highest(-n); }
-    double least_depth() const {
-        double least = inf;
-        for (const Vec3& n : faces) least = std::min(least, depth(n));
-        return least;
-    }
-    // Of the faces no deeper than that the one that looks most along a way, if it looks there more than `least`.
-    Vec3 most_along(const Vec3& way, double deep, double least) const {
-        Vec3 best;
-        for (const Vec3& n : faces)
-            if (dot(n, way) > (best == Vec3{} ? least : dot(best, way)) && depth(n) <= deep) best = n;
-        return best;
-    }
-    Vec3 way(double perturbation) const {
-        const double least = least_depth();
-        const bool thin = least < depth(unit(area)) / 2 - 5 * perturbation;
-        return thin ? most_along(unit(area), 1.1 * least + perturbation, -2) : unit(area);
-    }
+    bool hides(double depth, const Vec3& way) const { return depth < deepest / 2 * std::max(0.0, dot(way, normal)); }
 };
 
 using Key = std::pair<const Edge*, const Edge*>; // of a, of b
 struct Found {
     double depth;
-    Vec3 point, way;
+    Vec3 point, way; ///< out of b
+};
+
+// How a piece leaves the other body.
+struct Way {
+    double distance = inf, depth = 0;
+    Vec3 normal; ///< out of that body
+    std::uint32_t face = none;
+    Vec3 point;
+    bool in_arc = true;
 };
 
 class PairOfBodies {
@@ -156,16 +154,27 @@ public:
             for (const Edge& edge : bodies_[side]->edges) pierce(side, edge);
     }
     bool crosses() const { return !crossings_.empty(); }
+    struct InnerVertex {
+        std::size_t side;
+        std::uint32_t vertex, face;
+        Vec3 way; ///< out of the other body
+        double depth;
+        std::uint32_t region;
+    };
+    /// Vertices that crossings have inside, though their rays found nothing. After contacts().
+    const std::vector<InnerVertex>& inner_vertices() const { return inner_; }
 
     std::map<Key, Found> contacts() {
         find_loops();
         if (!bodies_[0]->contact.empty() || !bodies_[1]->contact.empty()) leave_out();
         cut_pieces();
         find_regions();
+        find_inner_vertices();
         std::map<Key, Found> all;
-        pass_edges(all);
-        give_deep(all, false);
-        if (all.empty() && bodies_[0]->contact.empty() && bodies_[1]->contact.empty()) give_deep(all, true);
+        for (const int effort : {0, 1, 2}) {
+            if (effort == 2 && !(all.empty() && bodies_[0]->contact.empty() && bodies_[1]->contact.empty())) break;
+            give(all, effort);
+        }
         return all;
     }
 
@@ -219,7 +228,6 @@ private:
 
     void walk(std::size_t begin, std::vector<bool>& seen) {
         Loop loop;
-        Vec3 normals; // T
         double runs = 0;
         for (std::size_t at = begin; !loop.closed;) {
             seen[at] = true;
@@ -232,14 +240,11 @@ private:
             const std::size_t to = l.from == at ? l.to : l.from;
             const Vec3 p = crossings_[at].point, q = crossings_[to].point, origin = crossings_[begin].point;
             loop.area = loop.area + 0.5 * cross(p - origin, q - origin);
-            normals = normals + length(q - p) * (l.n_b - l.n_a);
             runs += dot(q - p, cross(l.n_b, l.n_a));
             loop.closed = to == begin;
             at = to;
         }
         if (runs < 0) loop.area = -loop.area;
-        if (length(normals) > 0 && dot(unit(loop.area), unit(normals)) < 0.5)
-            loop.area = length(loop.area) * unit(normals);
         loops_.push_back(loop);
     }
 
@@ -271,8 +276,10 @@ private:
             if (!bodies_[1 - c.side]->solid.closed) continue;
             const bool first = i == 0 || crossings_[i - 1].edge != c.edge;
             const bool last = i + 1 == crossings_.size() || crossings_[i + 1].edge != c.edge;
-            if (c.leaves && first) pieces_.push_back({c.side, c.edge, i, {own.vertices[c.edge->from], c.point}, false});
-            if (!c.leaves && last) pieces_.push_back({c.side, c.edge, i, {c.point, own.vertices[c.edge->to]}, false});
+            if (c.leaves && first)
+                pieces_.push_back({c.side, c.edge, i, {own.vertices[c.edge->from], c.point}, false, c.edge->from});
+            if (!c.leaves && last)
+                pieces_.push_back({c.side, c.edge, i, {c.point, own.vertices[c.edge->to]}, false, c.edge->to});
             if (c.leaves && !first && !crossings_[i - 1].leaves)
                 pieces_.push_back({c.side, c.edge, i, {crossings_[i - 1].point, c.point}, true});
         }
@@ -286,167 +293,219 @@ private:
             graph.join(static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(k));
         };
         for (const Link& l : links_) join(l.from, l.to);
-        std::set<std::pair<std::size_t, std::uint32_t>> corners; // at the end of a piece, or in contact
         for (const Piece& p : pieces_) {
-            const std::uint32_t v = crossings_[p.crossing].leaves ? p.edge->from : p.edge->to;
-            join(p.crossing, p.through ? p.crossing - 1 : first[p.side] + v);
-            if (!p.through) corners.emplace(p.side, v);
+            join(p.crossing, p.through ? p.crossing - 1 : first[p.side] + p.vertex);
         }
         std::set<const Edge*> crossed;
         for (const Crossing& c : crossings_) crossed.insert(c.edge);
         for (const std::size_t side : {0u, 1u}) {
             const auto& contact = bodies_[side]->contact;
-            for (const auto& [v, depth] : contact) corners.emplace(side, v);
             for (const Edge& e : bodies_[side]->edges)
                 if (contact.contains(e.from) && contact.contains(e.to) && !crossed.contains(&e))
                     join(first[side] + e.from, first[side] + e.to);
         }
         region_ = graph.flood();
-        for (std::size_t i = 0; i < crossings_.size(); ++i) regions_[region_[i]].points.push_back(crossings_[i].point);
-        for (const auto& [side, v] : corners) {
-            Region& region = regions_[region_[first[side] + v]];
-            region.points.push_back(bodies_[side]->vertices[v]);
-            const auto at = bodies_[side]->contact.find(v);
-            if (at == bodies_[side]->contact.end()) continue;
-            region.speaks = true;
-            region.told = region.deepest = std::max(region.deepest, at->second);
-        }
+        for (const std::size_t side : {0u, 1u})
+            for (const auto& [v, contact] : bodies_[side]->contact) {
+                const Vec3 n = bodies_[1 - side]->normals[contact.face];
+                regions_[region_[first[side] + v]].tell(contact.depth, side == 0 ? n : -n);
+            }
         for (const Loop& loop : loops_) {
             Region& region = regions_[region_[loop.crossings[0]]];
             region.area = region.area + loop.area;
             region.areas += length(loop.area);
         }
         for (const Link& l : links_) {
-            Region& region = regions_[region_[l.from]];
-            const double part = length(crossings_[l.to].point - crossings_[l.from].point);
-            const bool flush = dot(l.n_a, l.n_b) > 0.98;
-            region.whole += part;
-            region.flush += flush ? part : 0;
-            if (!flush) region.faces.insert(region.faces.end(), {l.n_b, -l.n_a});
+            auto& faces = regions_[region_[l.from]].faces;
+            faces.insert(faces.end(), {l.n_b, -l.n_b, -l.n_a, l.n_a});
         }
     }
 
-    void pass_edges(std::map<Key, Found>& all) {
-        std::map<Key, Region*> regions;
-        for (const Loop& loop : loops_) {
-            std::vector<const Crossing*> sharp;
-            for (const std::size_t i : loop.crossings)
-                if (crossings_[i].edge->sharp) sharp.push_back(&crossings_[i]);
-            for (std::size_t i = loop.closed ? 0 : 1; i < sharp.size(); ++i) {
-                const Crossing *x = sharp[(i + sharp.size() - 1) % sharp.size()], *y = sharp[i];
-                if (x->side == y->side) continue;
-                if (x->side == 1) std::swap(x, y);
-                Region& region = regions_[region_[loop.crossings[0]]];
-                const auto found = pass(unit(loop.area), region, *x, *y);
-                const Key key{x->edge, y->edge};
-                if (!found || (all.contains(key) && all[key].depth <= found->depth)) continue;
-                all[key] = *found;
-                regions[key] = &region;
-            }
-        }
-        for (const auto& [key, region] : regions) {
-            region->speaks = true;
-            region->told = std::max(region->told, all[key].depth);
+    // They are cast again from where they were moved to.
+    void find_inner_vertices() {
+        std::map<std::pair<std::size_t, std::uint32_t>, std::size_t> ends; // vertices, and a piece of theirs
+        for (std::size_t i = 0; i < pieces_.size(); ++i)
+            if (!pieces_[i].through && !bodies_[pieces_[i].side]->contact.contains(pieces_[i].vertex))
+                ends.emplace(std::pair(pieces_[i].side, pieces_[i].vertex), i);
+        for (const auto& [end, i] : ends) {
+            const auto& [side, v] = end;
+            Body &own = *bodies_[side], &other = *bodies_[1 - side];
+            const Vec3 inward = rotate(own.pose, -own.solid.vertex_normals[v]);
+            const Hit hit = other.exit_along(own.vertices[v], inward);
+            if (hit.triangle == Hit::none || hit.distance > own.solid.exits[v]) continue;
+            const Vec3 n = other.normals[hit.triangle];
+            const double depth = hit.distance * dot(n, inward);
+            const std::uint32_t region = region_[pieces_[i].crossing];
+            if (!leads_out(regions_[region], depth, side == 0 ? n : -n)) continue;
+            inner_.push_back({side, v, hit.triangle, n, depth, region});
+            own.contact[v] = {depth, hit.triangle};
         }
     }
 
-    std::optional<Found> pass(const Vec3& s, const Region& region, const Crossing& x, const Crossing& y) const {
-        if (region.pierced() || x.edge->concave || y.edge->concave) return {};
-        const auto n_a = bodies_[0]->normals_at(*x.edge), n_b = bodies_[1]->normals_at(*y.edge);
-        const Vec3 whole = bodies_[0]->along(*x.edge), gap = y.point - x.point;
-        const Vec3 e_a = unit(whole), e_b = unit(bodies_[1]->along(*y.edge)), out = n_b[0] + n_b[1];
-        const Vec3 n = (dot(cross(e_a, e_b), out) < 0 ? -1 : 1) * unit(cross(e_a, e_b));
-        Found found{dot(gap, n), x.point, n};
-        if (length(cross(e_a, e_b)) > 0.05 && dot(n, s) >= 0.5 && angle(n, out) < angle(n_b[0], out) + 0.1
-            && angle(-n, n_a[0] + n_a[1]) < angle(n_a[0], n_a[0] + n_a[1]) + 0.1) {
-            if (dot(n, region.way(perturbation_)) <= 0.1) return {};
-            const Vec3 start = bodies_[0]->vertices[x.edge->from], across = cross(e_b, n);
-            const double at = dot(y.point - start, across) / dot(whole, across); // nearest to b's line
-            found.point = start + std::clamp(at, x.leaves ? 0.0 : x.at, x.leaves ? x.at : 1.0) * whole;
-        } else {
-            found.way = {};
-            for (const Vec3& face : {n_b[0], n_b[1], -n_a[0], -n_a[1]})
-                if (dot(face, s) > std::max(0.8, dot(found.way, s))) found.way = face;
-            found.depth = std::min({dot(gap, found.way), length(cross(gap, e_a)), length(cross(gap, e_b))});
-        }
-        if (found.depth <= 0.1 * perturbation_ || found.depth < region.deepest / 2) return {};
-        if (region.least_depth() < found.depth / (region.flush > region.whole / 10 ? 1.25 : 2) - 5 * perturbation_)
-            return {};
-        return found;
+    bool leads_out(const Region& region, double depth, const Vec3& way) const {
+        return depth > 0.1 * perturbation_ && (region.pierced() || dot(way, unit(region.area)) > 0.1);
     }
 
     // From a little inside the piece.
     Hit exit_along(const Piece& piece, const Vec3& point, const Vec3& way) const {
-        const Vec3 from = point + 1e-3 * (0.5 * (piece.ends[0] + piece.ends[1]) - point);
-        return bodies_[1 - piece.side]->exit_along(from, piece.side == 0 ? way : -way);
+        return bodies_[1 - piece.side]->exit_along(point + 1e-3 * (piece.middle() - point), way);
     }
 
-    void give_deep(std::map<Key, Found>& all, bool all_speak) {
-        for (const auto& entry : regions_) {
-            const Region& region = entry.second;
-            std::vector<Piece> pieces;
-            for (const Piece& p : pieces_)
-                if (region_[p.crossing] == entry.first && (all_speak || (p.edge->sharp && !p.edge->concave)))
-                    pieces.push_back(p);
-            std::vector<std::pair<Key, Found>> deep;
-            const auto add = [&](const Piece& piece, const Vec3& point, const Vec3& way, double depth, const Hit& hit) {
-                if (depth <= std::max(region.told, 0.1 * perturbation_) || hit.triangle == Hit::none) return;
-                const Vec3 out = point + (piece.side == 0 ? depth : -depth) * way;
-                const Edge* other = bodies_[1 - piece.side]->nearest_edge(hit.triangle, out);
-                deep.push_back(piece.side == 0 ? std::pair(Key{piece.edge, other}, Found{depth, point, way})
-                                               : std::pair(Key{other, piece.edge}, Found{depth, out, way}));
-            };
-            if (!region.pierced())
-                ask_deeper(region, pieces, add);
-            else if (!region.speaks)
-                ask_pierced(region, pieces, add);
-            double most = 0;
-            for (const auto& [key, found] : deep) most = std::max(most, found.depth);
-            for (const auto& [key, found] : deep)
-                if (found.depth >= most / 2 && (!all.contains(key) || all[key].depth < found.depth)) all[key] = found;
-        }
+    // The piece between two planes, moved until its line passes where they meet: along what is across both.
+    Way way_over_ridge(const Piece& piece) const {
+        const Body& other = *bodies_[1 - piece.side];
+        const std::uint32_t entry = crossings_[piece.crossing - 1].face, exit = crossings_[piece.crossing].face;
+        const Vec3 along = unit(piece.ends[1] - piece.ends[0]), in = other.normals[entry], out = other.normals[exit];
+        const double enters = std::max(1e-9, -dot(in, along)), leaves = std::max(1e-9, dot(out, along));
+        const Vec3 sum = (1 / enters) * in + (1 / leaves) * out;
+        if (!(length(sum) > 1e-3)) return {};
+        Way way;
+        way.distance = way.depth = length(piece.ends[1] - piece.ends[0]) / length(sum);
+        way.normal = unit(sum);
+        way.face = dot(in, way.normal) > dot(out, way.normal) ? entry : exit;
+        const double foot = way.depth * dot(in, way.normal) / enters; // in an acute ridge beside the piece
+        way.point = piece.ends[0] + std::clamp(foot, 0.0, length(piece.ends[1] - piece.ends[0])) * along;
+        const auto n = bodies_[piece.side]->normals_at(*piece.edge);
+        way.in_arc = angle(-way.normal, n[0] + n[1]) < angle(n[0], n[0] + n[1]) + 0.1;
+        return way;
     }
 
+    Way way_past_face(const Piece& piece) const {
+        Way way;
+        way.face = crossings_[piece.crossing].face;
+        way.normal = bodies_[1 - piece.side]->normals[way.face];
+        way.distance = way.depth = std::fabs(dot(piece.ends[1] - piece.ends[0], way.normal));
+        way.point = bodies_[piece.side]->vertices[piece.vertex];
+        return way;
+    }
+
+    Way way_along(const Piece& piece, const Vec3& point, const Vec3& direction) const {
+        const Hit hit = exit_along(piece, point, direction);
+        if (hit.triangle == Hit::none) return {};
+        const Vec3 out = bodies_[1 - piece.side]->normals[hit.triangle];
+        return {hit.distance, hit.distance * dot(out, direction), out, hit.triangle, point};
+    }
+
+    // Where a's surface is when a piece of b has come out.
+    Vec3 point_past(const Way& way) const {
+        const auto& [x, y, z] = bodies_[0]->solid.triangles[way.face];
+        const auto& at = bodies_[0]->vertices;
+        return closest_on_triangle(way.point + way.depth * way.normal, at[x], at[y], at[z]);
+    }
+
+    const Edge* nearest_to(const Piece& piece, const Way& way) const {
+        return bodies_[1 - piece.side]->nearest_edge(way.face, way.point + way.depth * way.normal);
+    }
+
+    const Edge* edge_at(const Piece& piece, std::size_t end) const {
+        const std::size_t crossing = piece.through ? piece.crossing - 1 + end : piece.crossing;
+        return bodies_[1 - piece.side]->nearest_edge(crossings_[crossing].face, piece.ends[end]);
+    }
+
+    // A piece that ends at a vertex in contact comes out with it, if it is short or its middle does; its other end may
+    // be a contact, too.
     template <class Add>
-    void ask_deeper(const Region& region, const std::vector<Piece>& pieces, Add add) const {
-        Vec3 way = region.way(perturbation_);
-        if (region.told >= region.depth(way) / 2) return;
-        const Vec3 face = region.most_along(way, region.depth(way), 0.8);
-        if (region.flush > region.whole / 10 && face != Vec3{}) way = face;
-        for (const Piece& piece : pieces) {
-            std::vector<Vec3> points;
-            if (piece.through) points.push_back(0.5 * (piece.ends[0] + piece.ends[1]));
-            if (!region.speaks) points.insert(points.end(), {piece.ends[0], piece.ends[1]});
-            const auto normals = bodies_[piece.side]->normals_at(*piece.edge);
-            const Vec3 out = (piece.side == 0 ? -1 : 1) * unit(normals[0] + normals[1]);
-            for (const Vec3& p : points) {
-                const double most =
-                    piece.side == 0 ? region.highest(way) - dot(p, way) : region.highest(-way) + dot(p, way);
-                const Hit hit = exit_along(piece, p, way), in = exit_along(piece, p, out);
-                add(piece, p, way, std::min({most, hit.distance, in.triangle == Hit::none ? inf : in.distance}), hit);
+    bool goes_with_vertex(const Piece& piece, Add add) const {
+        const auto& contact = bodies_[piece.side]->contact;
+        const auto at = contact.find(piece.vertex);
+        if (piece.through || at == contact.end()) return false;
+        if (piece.edge->hides < 1e6 * perturbation_) return true;
+        const double depth = at->second.depth, most = 1.1 * depth + 10 * perturbation_;
+        const Vec3 n = bodies_[1 - piece.side]->normals[at->second.face];
+        const Hit middle = exit_along(piece, piece.middle(), n);
+        if (middle.triangle == Hit::none || middle.distance > most) return false;
+        const std::size_t far = piece.vertex == piece.edge->from ? 1 : 0;
+        const Hit end = exit_along(piece, piece.ends[far], n);
+        if (end.triangle != Hit::none && end.distance <= most && end.distance >= depth / 2)
+            add(piece, {end.distance, end.distance, n, end.triangle, piece.ends[far]}, edge_at(piece, far));
+        return true;
+    }
+
+    // effort 0: by ways of sharp and convex edges; 1: of silent regions by S; 2: likewise, by any edge.
+    void give(std::map<Key, Found>& all, int effort) {
+        struct Candidate {
+            Region* region;
+            Key key;
+            Found found;
+        };
+        std::vector<Candidate> candidates;
+        const auto counts = [&](const Piece& p) { return effort == 2 || (p.edge->sharp && !p.edge->concave); };
+        const auto add = [&](const Piece& piece, const Way& way, const Edge* other) {
+            const bool of_a = piece.side == 0;
+            if (!leads_out(regions_[region_[piece.crossing]], way.depth, of_a ? way.normal : -way.normal)) return;
+            candidates.push_back({&regions_[region_[piece.crossing]],
+                                  of_a ? Key{piece.edge, other} : Key{other, piece.edge},
+                                  {way.depth, of_a ? way.point : point_past(way), of_a ? way.normal : -way.normal}});
+        };
+        for (const Piece& piece : pieces_) {
+            const Region& region = regions_[region_[piece.crossing]];
+            if (region.pierced() || (effort > 0 && region.speaks) || !counts(piece)) continue;
+            if (effort == 0 && goes_with_vertex(piece, add)) continue;
+            const Way way = effort > 0 ? Way{} : piece.through ? way_over_ridge(piece) : way_past_face(piece);
+            if (way.face != none && region.hides(way.depth, piece.side == 0 ? way.normal : -way.normal)) continue;
+            const auto n = bodies_[piece.side]->normals_at(*piece.edge);
+            const Vec3 direction = effort == 0 ? -unit(n[0] + n[1]) : (piece.side == 0 ? 1 : -1) * unit(region.area);
+            const Way middle = way_along(piece, piece.middle(), direction);
+            const bool passes = piece.through && way.in_arc && way.distance <= 2 * middle.distance
+                                && exit_along(piece, way.point, way.normal).distance > 0.75 * way.distance;
+            if (middle.face == none && way.face == none) continue;
+            if (middle.distance >= way.distance || passes) {
+                const bool with_vertex = !piece.through && bodies_[piece.side]->contact.contains(piece.vertex);
+                if (way.face != none && way.in_arc && !with_vertex) add(piece, way, nearest_to(piece, way));
+                continue;
             }
+            std::vector<std::pair<Way, const Edge*>> ends;
+            for (const std::size_t e : {0u, 1u}) {
+                const Way end = way_along(piece, piece.ends[e], direction);
+                if (end.face == none || end.depth < middle.depth / 2 || middle.depth < end.depth / 2) break;
+                const bool vertex = !piece.through && (piece.vertex == piece.edge->from) == (e == 0);
+                ends.emplace_back(end, vertex ? nearest_to(piece, end) : edge_at(piece, e));
+            }
+            if (ends.size() == 2 && ends[0].second != ends[1].second)
+                for (const auto& [end, other] : ends) add(piece, end, other);
+            else
+                add(piece, middle, nearest_to(piece, middle));
         }
+        for (const auto& entry : regions_)
+            if (entry.second.pierced() && !entry.second.speaks) ask_pierced(entry.first, counts, add);
+        for (const Candidate& c : candidates) c.region->tell(c.found.depth, c.found.way);
+        const auto out_of_b = [](const InnerVertex& v) { return v.side == 0 ? v.way : -v.way; };
+        if (effort == 0) {
+            for (const InnerVertex& v : inner_) regions_[v.region].tell(v.depth, out_of_b(v));
+            std::erase_if(inner_, [&](const auto& v) { return regions_[v.region].hides(v.depth, out_of_b(v)); });
+        }
+        for (const Candidate& c : candidates)
+            if (!c.region->hides(c.found.depth, c.found.way)
+                && (!all.contains(c.key) || (1 + 1e-6) * all[c.key].depth < c.found.depth))
+                all[c.key] = c.found;
     }
 
-    template <class Add>
-    void ask_pierced(const Region& region, const std::vector<Piece>& pieces, Add add) const {
+    template <class Counts, class Add>
+    void ask_pierced(std::uint32_t number, Counts counts, Add add) const {
         const Vec3 preferred{0.31, 0.53, 0.79};
+        std::vector<Piece> pieces;
+        for (const Piece& p : pieces_)
+            if (region_[p.crossing] == number && counts(p)) pieces.push_back(p);
+        const auto exit = [&](const Piece& p, const Vec3& end, const Vec3& n) {
+            return exit_along(p, end, p.side == 0 ? n : -n);
+        };
         Vec3 way;
         double least = inf;
-        for (const Vec3& face : region.faces)
-            for (const Vec3& n : {face, -face}) {
-                double most = 0;
-                for (const Piece& piece : pieces)
-                    for (const Vec3& end : piece.ends) most = std::max(most, exit_along(piece, end, n).distance);
-                if (most <= 0 || most > 1.001 * least) continue;
-                if (most >= 0.999 * least && dot(n, preferred) <= dot(way, preferred)) continue;
-                way = n;
-                least = std::min(least, most);
-            }
-        for (const Piece& piece : pieces)
-            for (const Vec3& end : piece.ends) {
-                const Hit hit = exit_along(piece, end, way);
-                add(piece, end, way, hit.distance, hit);
+        for (const Vec3& n : regions_.at(number).faces) {
+            double most = 0;
+            for (const Piece& p : pieces)
+                for (const Vec3& end : p.ends) most = std::max(most, exit(p, end, n).distance);
+            if (most <= 0 || most > 1.001 * least) continue;
+            if (most >= 0.999 * least && dot(n, preferred) <= dot(way, preferred)) continue;
+            way = n;
+            least = std::min(least, most);
+        }
+        for (const Piece& p : pieces)
+            for (const Vec3& end : p.ends) {
+                const Hit hit = exit(p, end, way);
+                if (hit.triangle == Hit::none) continue;
+                const Way out{hit.distance, hit.distance, p.side == 0 ? way : -way, hit.triangle, end};
+                add(p, out, nearest_to(p, out));
             }
     }
 
@@ -458,6 +517,7 @@ private:
     std::vector<Piece> pieces_;
     std::vector<std::uint32_t> region_; ///< by crossing, then vertices of a and b
     std::map<std::uint32_t, Region> regions_;
+    std::vector<InnerVertex> inner_;
 };
 
 // The vertex of a source that is farthest inside; in the frame of the pair.
@@ -497,17 +557,23 @@ std::vector<ReferenceContact> find_edges(const Solid& a, const Pose& pose_a, con
             a_in_b.rotation[i] += pose_b.rotation[3 * k + i / 3] * pose_a.rotation[3 * k + i % 3];
     }
     const double perturbation = 1e-7 * std::min(a.diagonal, b.diagonal);
-    Body of_a(a, a_in_b, perturbation, 0.01), of_b(b, {}, perturbation, -0.01);
+    Body of_a(a, a_in_b, perturbation, 0.01 * perturbation), of_b(b, {}, 3 * perturbation, -0.01 * perturbation);
     for (const CastRay& r : cast_all(a, pose_a, b, pose_b))
-        if (r.contact) of_a.contact[r.vertex] = r.depth;
+        if (r.contact) of_a.contact[r.vertex] = {r.depth, r.triangle};
     for (const CastRay& r : cast_all(b, pose_b, a, pose_a))
-        if (r.contact) of_b.contact[r.vertex] = r.depth;
+        if (r.contact) of_b.contact[r.vertex] = {r.depth, r.triangle};
     std::vector<ReferenceContact> contacts;
     PairOfBodies pair(of_a, of_b, perturbation);
     if (pair.crosses()) {
         for (const auto& [edges, c] : pair.contacts())
             contacts.push_back({Side::a, FeatureKind::edges, edges.first->number, edges.second->number, c.point, -c.way,
                                 c.depth, c.depth, (of_a.area_at(*edges.first) + of_b.area_at(*edges.second)) / 12});
+        for (const auto& v : pair.inner_vertices()) {
+            const Body &own = v.side == 0 ? of_a : of_b, &other = v.side == 0 ? of_b : of_a;
+            contacts.push_back({v.side == 0 ? Side::a : Side::b, FeatureKind::vertex, own.solid.vertex_index[v.vertex],
+                                other.solid.triangle_index[v.face], own.vertices[v.vertex],
+                                v.side == 0 ? -v.way : v.way, v.depth, v.depth, own.solid.vertex_areas[v.vertex]});
+        }
     } else if (of_a.contact.empty() && of_b.contact.empty()) {
         if (const auto c = inside(of_a, of_b, Side::a)) contacts.push_back(*c);
         if (const auto c = inside(of_b, of_a, Side::b)) contacts.push_back(*c);
