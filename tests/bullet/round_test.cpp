@@ -18,14 +18,12 @@
 namespace raycontact::test {
 namespace {
 
-bullet::Converted converted(const std::shared_ptr<const Shape>& shape) {
-    return {shape, std::make_shared<bullet::BulletMesh>(shape)};
-}
-
-std::vector<bullet::RoundContact> contacts(const bullet::Converted& mesh, const btCollisionShape& shape,
-                                           const btTransform& pose, double reach = 0) {
+std::vector<bullet::RoundContact> contacts(const std::shared_ptr<const Shape>& mesh, const btCollisionShape& shape,
+                                           const btTransform& pose, double reach = 0,
+                                           const btTransform& mesh_pose = at(0, 0, 0)) {
     std::vector<bullet::RoundContact> found;
-    bullet::round_contacts(mesh, at(0, 0, 0), bullet::round_of(shape), pose, btScalar(reach), found);
+    const std::vector<bullet::Obstacle> obstacles{{bullet::Surface(*mesh), mesh_pose, mesh_pose}};
+    bullet::round_contacts(bullet::round_of(shape), pose, {}, obstacles, reach, found);
     return found;
 }
 
@@ -47,8 +45,7 @@ double away(const Shape& shape, const btVector3& p) {
 }
 
 TEST(Round, DeepestIsTheDistanceFromTheSurface) {
-    const auto shape = Shape::make(scenes::scene_model("torus", 200).mesh);
-    const bullet::Converted mesh = converted(shape);
+    const auto mesh = Shape::make(scenes::scene_model("torus", 200).mesh);
     scenes::Random random(5);
     const btSphereShape ball(btScalar(0.15));
     int touching = 0;
@@ -56,7 +53,7 @@ TEST(Round, DeepestIsTheDistanceFromTheSurface) {
         const btVector3 centre(btScalar(0.8 * random.symmetric()), btScalar(0.8 * random.symmetric()),
                                btScalar(0.3 * random.symmetric()));
         const auto found = contacts(mesh, ball, btTransform(btQuaternion::getIdentity(), centre));
-        const double expected = away(*shape, centre);
+        const double expected = away(*mesh, centre);
         if (expected > 0.15 + 0.01) {
             EXPECT_TRUE(found.empty()) << i;
             continue;
@@ -69,7 +66,7 @@ TEST(Round, DeepestIsTheDistanceFromTheSurface) {
             least = std::min(least, std::fabs(double(c.distance + ball.getRadius())));
             EXPECT_NEAR(double(c.normal.length()), 1, 1e-4);
             EXPECT_LT(double((c.point + c.normal * (c.distance + ball.getRadius()) - centre).length()), 1e-4);
-            EXPECT_LT(away(*shape, c.point), 0.01);
+            EXPECT_LT(away(*mesh, c.point), 0.01);
         }
         EXPECT_NEAR(least, expected, 0.005) << i;
     }
@@ -88,7 +85,7 @@ TEST(Round, OnAFlatFloorThereIsOneContact) {
             sheet.triangles.push_back({v, v + 21, v + 22});
             sheet.triangles.push_back({v, v + 22, v + 1});
         }
-    const bullet::Converted floor = converted(Shape::make(sheet));
+    const auto floor = Shape::make(sheet);
     for (int i = 0; i < 100; ++i) {
         const auto found = contacts(floor, ball, at(-0.2 + 0.004 * i, 0.001 * i, 0.29));
         ASSERT_EQ(found.size(), 1u) << i;
@@ -98,7 +95,7 @@ TEST(Round, OnAFlatFloorThereIsOneContact) {
 }
 
 TEST(Round, CapsuleOnAFloorARimAndACorner) {
-    const bullet::Converted floor = converted(Shape::make(box_mesh(4, 4, 1)));
+    const auto floor = Shape::make(box_mesh(4, 4, 1));
     const btCapsuleShapeX capsule(btScalar(0.2), 1);
     auto found = contacts(floor, capsule, at(0, 0, 0.69));
     ASSERT_EQ(found.size(), 2u); // both ends
@@ -112,18 +109,17 @@ TEST(Round, CapsuleOnAFloorARimAndACorner) {
     EXPECT_NEAR(double(found[1].normal.z()), 1, 1e-5);
     EXPECT_NEAR(double(found[1].distance), -0.01, 1e-5);
     // Its side on a corner of the box that points up: turned, the box has its corner at (0, 0, sqrt 3 / 2).
-    const bullet::Converted box = converted(Shape::make(box_mesh(1, 1, 1)));
+    const auto box = Shape::make(box_mesh(1, 1, 1));
     btTransform tip = at(0, 0, 0);
     tip.setRotation(shortestArcQuat(btVector3(1, 1, 1).normalized(), btVector3(0, 0, 1)));
-    std::vector<bullet::RoundContact> on_tip;
-    bullet::round_contacts(box, tip, bullet::round_of(capsule), at(0.1, 0, std::sqrt(3) / 2 + 0.19), 0, on_tip);
+    const auto on_tip = contacts(box, capsule, at(0.1, 0, std::sqrt(3) / 2 + 0.19), 0, tip);
     ASSERT_EQ(on_tip.size(), 1u);
     EXPECT_NEAR(double(on_tip[0].distance), -0.01, 1e-4);
     EXPECT_NEAR(double(on_tip[0].normal.z()), 1, 1e-4);
 }
 
 TEST(Round, CentreInsideIsPushedOutTheNearestWay) {
-    const bullet::Converted box = converted(Shape::make(box_mesh(1, 1, 1)));
+    const auto box = Shape::make(box_mesh(1, 1, 1));
     const btSphereShape ball(btScalar(0.3));
     const auto found = contacts(box, ball, at(0.1, 0, 0.4));
     ASSERT_EQ(found.size(), 1u);
@@ -139,13 +135,13 @@ TEST(Round, CentreInsideIsPushedOutTheNearestWay) {
         EXPECT_NEAR(double(deep[0].distance), -(0.5 - std::fabs(z) + 0.05), 1e-5) << z;
         EXPECT_NEAR(double(deep[0].normal.z()), z > 0 ? 1 : -1, 1e-5) << z;
     }
-    const bullet::Converted ring = converted(torus());
+    const auto ring = torus();
     EXPECT_TRUE(contacts(ring, marble, at(0, 0, 0)).empty());
     const auto capsule_in = contacts(box, btCapsuleShapeZ(btScalar(0.05), btScalar(0.9)), at(0, 0, 0.75));
     ASSERT_EQ(capsule_in.size(), 1u); // its upper end is outside
     EXPECT_NEAR(double(capsule_in[0].distance), -0.25, 1e-5);
     // The far side of a thin plate is not met.
-    const bullet::Converted plate = converted(Shape::make(box_mesh(2, 2, 0.01)));
+    const auto plate = Shape::make(box_mesh(2, 2, 0.01));
     EXPECT_EQ(contacts(plate, ball, at(0, 0, 0.28)).size(), 1u);
 }
 
@@ -155,7 +151,7 @@ TEST(Round, ARadiusOfNothingIsPushedOut) {
         const btRigidBody& box = w.add_mesh(Shape::make(box_mesh(4, 4, 4)), 0, at(0, 0, 0));
         std::unique_ptr<btCollisionShape> shape = std::make_unique<btCapsuleShape>(btScalar(0), btScalar(1));
         if (ball) shape = std::make_unique<btSphereShape>(btScalar(0));
-        const auto found = contacts(converted(Shape::make(box_mesh(4, 4, 4))), *shape, at(0.2, 0.1, 1.7));
+        const auto found = contacts(Shape::make(box_mesh(4, 4, 4)), *shape, at(0.2, 0.1, 1.7));
         ASSERT_EQ(found.size(), ball ? 1u : 2u);
         EXPECT_NEAR(double(found[0].distance), -0.3, 1e-5);
         EXPECT_NEAR(double(found[0].normal.z()), 1, 1e-5);
@@ -167,7 +163,7 @@ TEST(Round, ARadiusOfNothingIsPushedOut) {
 }
 
 TEST(Round, AxisThroughAPlateIsPushedOut) {
-    const bullet::Converted plate = converted(Shape::make(box_mesh(2, 2, 0.01)));
+    const auto plate = Shape::make(box_mesh(2, 2, 0.01));
     const btCapsuleShapeZ capsule(btScalar(0.1), 2);
     EXPECT_EQ(contacts(plate, capsule, at(0, 0, 0)).size(), 1u); // through a diagonal
     auto found = contacts(plate, capsule, at(0.3, 0.1, 0.2));
@@ -190,23 +186,22 @@ TEST(Round, AxisThroughAPlateIsPushedOut) {
 }
 
 TEST(Round, RodAcrossAWallIsLiftedOntoIt) {
-    const auto shape = Shape::make(box_mesh(4, 0.1, 1));
-    const bullet::Converted wall = converted(shape);
+    const auto wall = Shape::make(box_mesh(4, 0.1, 1));
     const btCapsuleShape rod(btScalar(0.02), 1);
     for (const double below : {0.01, 0.03, 0.2}) {
         const auto found = contacts(wall, rod, at(0.3, 0, 0.5 - below));
         ASSERT_EQ(found.size(), 1u) << below;
         EXPECT_NEAR(double(found[0].normal.z()), 1, 1e-5) << below;
         EXPECT_NEAR(double(found[0].distance), -(below + 0.02), 1e-5) << below;
-        EXPECT_LT(away(*shape, found[0].point), 0.05) << below;
+        EXPECT_LT(away(*wall, found[0].point), 0.05) << below;
     }
     TestWorld w;
-    w.add_mesh(shape, 0, at(0, 0, 0));
+    w.add_mesh(wall, 0, at(0, 0, 0));
     const btRigidBody& body = w.add(std::make_unique<btCapsuleShape>(btScalar(0.02), btScalar(1)), 1, at(0.3, 0, 0.47));
     w.steps(60);
     EXPECT_NEAR(double(body.getWorldTransform().getOrigin().z()), 0.52, 0.01);
     // Of two walls that it goes through it is out when it is out of both.
-    const bullet::Converted ring = converted(torus());
+    const auto ring = torus();
     const auto both = contacts(ring, btCapsuleShapeX(btScalar(0.02), btScalar(3)), at(0, 0, 0.01));
     ASSERT_EQ(both.size(), 2u);
     for (const auto& c : both) EXPECT_GT(double(c.normal.z()), 0.9); // facets
@@ -215,13 +210,13 @@ TEST(Round, RodAcrossAWallIsLiftedOntoIt) {
 // Of many poses, on a solid with a hole: a thin rod always has a contact, and moved by the deepest one again and
 // again it gets out.
 TEST(Round, NoAxisInsideIsWithoutAWayOut) {
-    const bullet::Converted mesh = converted(torus());
+    const auto mesh = torus();
     const btCapsuleShapeX rod(btScalar(0.01), 2);
     const auto is_inside = [&](const btTransform& pose) {
         constexpr int parts = 100;
         for (int i = 0; i <= parts; ++i) {
             const btVector3 p = pose(btVector3(btScalar(2.0 * i / parts - 1), 0, 0));
-            if (contains(*mesh.shape, {double(p.x()), double(p.y()), double(p.z())})) return true;
+            if (contains(*mesh, {double(p.x()), double(p.y()), double(p.z())})) return true;
         }
         return false;
     };
@@ -251,7 +246,7 @@ TEST(Round, AxisThroughAnOpenSheetIsPushedToItsFront) {
     Mesh sheet;
     sheet.vertices = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}, {-1, 1, 0}};
     sheet.triangles = {{0, 1, 2}, {0, 2, 3}};
-    const bullet::Converted floor = converted(Shape::make(sheet));
+    const auto floor = Shape::make(sheet);
     for (const double height : {0.3, 0.0, -0.3}) {
         const auto found = contacts(floor, btCapsuleShapeZ(btScalar(0.05), btScalar(1)), at(0.2, 0.1, height));
         ASSERT_EQ(found.size(), 1u) << height;

@@ -2,52 +2,48 @@
 #include <axis.h>
 #include <vectors.h>
 
-#include <raycontact/collide.h>
+#include <raycontact/query.h>
 
 #include <algorithm>
-#include <tuple>
+#include <cmath>
 
 namespace raycontact::bullet {
 
 namespace {
 
-/// Where the axis goes through a triangle.
+/// Where the axis goes through a facet.
 struct Crossing {
-    btScalar at{}; ///< 0 at the first end, 1 at the second
-    btVector3 point, normal;
-    btScalar slope{}; ///< how far the whole axis goes along the normal, metres; negative: it enters
-    std::uint32_t triangle = 0;
+    double at = 0; ///< 0 at the first end, 1 at the second
+    Vec3 point;
+    double slope = 0; ///< how far the whole axis goes along the normal, metres; negative: it enters
+    Facet facet;
     bool enters() const { return slope < 0; }
 };
 
 /// Sines below which an edge counts as parallel to the axis, or a face as seen from its side.
-constexpr btScalar parallel = btScalar(1e-4);
+constexpr double parallel = 1e-4;
 
 class Axis {
 public:
-    Axis(const Converted& mesh, const btVector3& a, const btVector3& b)
-        : mesh_(mesh), a_(a), b_(b), along_(b - a), length_(along_.length()),
-          size_(btScalar(mesh.shape->radius()) + length_) {}
+    Axis(const Surface& mesh, const Vec3& a, const Vec3& b)
+        : mesh_(mesh), a_(a), b_(b), along_(b - a), length_(length(along_)), size_(mesh.size() + length_) {}
 
     std::vector<Crossing> crossings() const {
         std::vector<Crossing> found;
-        each_triangle(slack(), [&](std::uint32_t t) {
+        each_facet(slack(), [&](const Facet& f) {
             Crossing c;
-            c.normal = face_normal(t);
-            c.slope = c.normal.dot(along_);
-            if (btFabs(c.slope) <= btScalar(1e-6) * length_) return;
-            c.at = c.normal.dot(corner(t, 0) - a_) / c.slope;
+            c.slope = dot(f.normal, along_);
+            if (std::fabs(c.slope) <= 1e-6 * length_) return;
+            c.at = dot(f.normal, f.corner[0] - a_) / c.slope;
             if (!(c.at >= 0 && c.at <= 1)) return;
-            c.point = a_ + along_ * c.at;
-            c.triangle = t;
-            if (holds(t, c)) found.push_back(c);
+            c.point = a_ + c.at * along_;
+            c.facet = f;
+            if (holds(c)) found.push_back(c);
         });
-        std::sort(found.begin(), found.end(), [](const Crossing& x, const Crossing& y) {
-            return std::tie(x.at, x.triangle) < std::tie(y.at, y.triangle);
-        });
-        // Through an edge or a corner it meets several triangles of one surface.
+        std::stable_sort(found.begin(), found.end(), [](const Crossing& x, const Crossing& y) { return x.at < y.at; });
+        // Through an edge or a corner it meets several facets of one surface.
         const auto same = [&](const Crossing& x, const Crossing& y) {
-            return x.enters() == y.enters() && (y.at - x.at) * length_ <= btScalar(1e-4) * size_;
+            return x.enters() == y.enters() && (y.at - x.at) * length_ <= 1e-4 * size_;
         };
         found.erase(std::unique(found.begin(), found.end(), same), found.end());
         return found;
@@ -55,97 +51,92 @@ public:
 
     /// Along the normal of a face, until the end that is behind it is out.
     static WayOut past_face(const Crossing& c) {
-        return {c.point, c.normal, (c.enters() ? c.at - 1 : c.at) * c.slope, c.triangle};
+        return {c.point, c.facet.normal, (c.enters() ? c.at - 1 : c.at) * c.slope, c.facet};
     }
 
     WayOut of_piece(const Crossing& in, const Crossing& out) const {
         WayOut best = past_face(in);
         const WayOut other = past_face(out);
         if (other.depth < best.depth) best = other;
-        const btVector3 middle = (in.point + out.point) / 2;
-        each_triangle(best.depth, [&](std::uint32_t t) {
-            for (int k = 0; k < 3; ++k) try_edge(t, k, middle, best);
+        const Vec3 middle = 0.5 * (in.point + out.point);
+        each_facet(best.depth, [&](const Facet& f) {
+            for (std::size_t k = 0; k < 3; ++k) try_edge(f, k, middle, best);
         });
         return best;
     }
 
 private:
-    btScalar slack() const { return btScalar(2e-6) * size_; } // of float coordinates, with a margin
+    double slack() const { return 2e-6 * size_; } // of float coordinates, with a margin
 
-    const btVector3& corner(std::uint32_t t, int k) const { return mesh_.in_bullet->corner(t, k); }
-    btVector3 face_normal(std::uint32_t t) const { return mesh_.in_bullet->face_normal(t); }
     template <class Visit>
-    void each_triangle(btScalar around, Visit&& visit) const {
-        btVector3 low = a_, high = a_;
-        low.setMin(b_);
-        high.setMax(b_);
-        const btVector3 more(around, around, around);
-        for (const std::uint32_t t : mesh_.in_bullet->overlapping(low - more, high + more)) visit(t);
+    void each_facet(double around, Visit&& visit) const {
+        const Vec3 more{around, around, around};
+        const Vec3 low{std::min(a_.x, b_.x), std::min(a_.y, b_.y), std::min(a_.z, b_.z)};
+        const Vec3 high{std::max(a_.x, b_.x), std::max(a_.y, b_.y), std::max(a_.z, b_.z)};
+        std::vector<Facet> facets;
+        mesh_.near(low - more, high + more, facets);
+        for (const Facet& f : facets) visit(f);
     }
-    bool holds(std::uint32_t t, const Crossing& c) const {
-        for (int k = 0; k < 3; ++k) {
-            const btVector3 edge = corner(t, k + 1) - corner(t, k);
-            if (c.normal.dot(edge.cross(c.point - corner(t, k))) < -slack() * edge.length()) return false;
+    bool holds(const Crossing& c) const {
+        for (std::size_t k = 0; k < 3; ++k) {
+            const Vec3 &p = c.facet.corner[k], edge = c.facet.corner[(k + 1) % 3] - p;
+            if (dot(c.facet.normal, cross(edge, c.point - p)) < -slack() * length(edge)) return false;
         }
         return true;
     }
-    /// The corner of a neighbour that is not on the edge.
-    const btVector3& far_corner(std::uint32_t t, int k, std::uint32_t neighbour) const {
-        const auto& ids = mesh_.in_bullet->triangle(t);
-        int far = 0;
-        for (const std::uint32_t id : mesh_.in_bullet->triangle(neighbour)) {
-            if (id != ids[static_cast<std::size_t>(k)] && id != ids[static_cast<std::size_t>((k + 1) % 3)]) break;
-            ++far;
-        }
-        return corner(neighbour, far);
-    }
 
     /// Sideways past an edge, if that is a rim as seen along the axis: no surface of the same part is behind it.
-    void try_edge(std::uint32_t t, int k, const btVector3& middle, WayOut& best) const {
-        const btVector3 &p = corner(t, k), edge = corner(t, k + 1) - p;
-        btVector3 away = along_.cross(edge);
-        const btScalar sine = away.length();
-        if (sine <= parallel * length_ * edge.length()) return;
-        away /= sine;
-        const std::uint32_t neighbour = mesh_.shape->neighbours()[t][static_cast<std::size_t>(k)];
+    void try_edge(const Facet& f, std::size_t k, const Vec3& middle, WayOut& best) const {
+        const Shape& shape = *mesh_.shape();
+        const Vec3 &p = f.corner[k], edge = f.corner[(k + 1) % 3] - p;
+        Vec3 away = cross(along_, edge);
+        const double sine = length(away);
+        if (sine <= parallel * length_ * length(edge)) return;
+        away = (1 / sine) * away;
+        const std::uint32_t neighbour = shape.neighbours()[f.triangle][k];
         if (neighbour == Shape::no_triangle) {
-            if ((corner(t, k + 2) - p).dot(away) > 0) away = -away;
+            if (dot(f.corner[(k + 2) % 3] - p, away) > 0) away = -away;
         } else {
-            const btVector3 one = face_normal(t), two = face_normal(neighbour);
-            const btScalar slope1 = one.dot(along_), slope2 = two.dot(along_), flat = parallel * length_;
+            const auto& ids = shape.triangles()[neighbour];
+            std::array<Vec3, 3> across;
+            for (std::size_t i = 0; i < 3; ++i) across[i] = shape.vertices()[ids[i]];
+            const Vec3 area = cross(across[1] - across[0], across[2] - across[0]);
+            const Vec3 two = (1 / length(area)) * area;
+            const double slope1 = dot(f.normal, along_), slope2 = dot(two, along_), flat = parallel * length_;
             if ((slope1 > flat && slope2 > flat) || (slope1 < -flat && slope2 < -flat)) return;
-            if ((far_corner(t, k, neighbour) - p).dot(one) > slack()) return; // it points inwards
-            if ((one + two).dot(away) < 0) away = -away;
+            for (const Vec3& corner : across)
+                if (dot(corner - p, f.normal) > slack()) return; // it points inwards
+            if (dot(f.normal + two, away) < 0) away = -away;
         }
-        const btScalar depth = (p - a_).dot(away);
+        const double depth = dot(p - a_, away);
         if (depth < -slack() || depth >= best.depth) return;
         const auto [at, on_edge] = closest_on_lines(a_, along_, p, edge, sine * sine);
         if (at < -parallel || at > 1 + parallel || on_edge < -parallel || on_edge > 1 + parallel) return;
-        const btVector3 point = p + edge * on_edge;
+        const Vec3 point = p + on_edge * edge;
         // Not past an edge of another part, with air in between.
-        if (mesh_.shape->has_inside() && !contains(*mesh_.shape, to_vec((middle + point) / 2))) return;
-        best = {point, away, btMax(depth, btScalar(0)), t};
+        if (shape.has_inside() && !contains(shape, 0.5 * (middle + point))) return;
+        best = {point, away, std::max(depth, 0.0), f};
     }
 
-    const Converted& mesh_;
-    btVector3 a_, b_, along_;
-    btScalar length_;
-    btScalar size_; ///< of the coordinates: what rounding grows with
+    const Surface& mesh_;
+    Vec3 a_, b_, along_;
+    double length_;
+    double size_; ///< of the coordinates: what rounding grows with
 };
 
 } // namespace
 
-void ways_through(const Converted& mesh, const btVector3& a, const btVector3& b, std::vector<WayOut>& out) {
+void ways_through(const Surface& mesh, const Vec3& a, const Vec3& b, std::vector<WayOut>& out) {
     out.clear();
     for (const Crossing& c : Axis(mesh, a, b).crossings()) {
         // The normal looks to the side of the second end where the slope is positive.
-        const bool second_is_longer = c.at < btScalar(0.5);
-        const btVector3 normal = (c.slope > 0) == second_is_longer ? c.normal : -c.normal;
-        out.push_back({c.point, normal, btMin(c.at, 1 - c.at) * btFabs(c.slope), c.triangle});
+        const bool second_is_longer = c.at < 0.5;
+        const Vec3 normal = (c.slope > 0) == second_is_longer ? c.facet.normal : -c.facet.normal;
+        out.push_back({c.point, normal, std::min(c.at, 1 - c.at) * std::fabs(c.slope), c.facet});
     }
 }
 
-void ways_out(const Converted& mesh, const btVector3& a, const btVector3& b, const std::array<bool, 2>& known,
+void ways_out(const Surface& mesh, const Vec3& a, const Vec3& b, const std::array<bool, 2>& known,
               std::vector<WayOut>& out) {
     out.clear();
     const Axis axis(mesh, a, b);

@@ -1,31 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <convert.h>
-
-#include <LinearMath/btVector3.h>
+#include <surface.h>
 
 #include <array>
-#include <cstdint>
 #include <vector>
 
 namespace raycontact::bullet {
 
-/// How far a capsule's axis has to move, and along what, to be out of a mesh. Mesh frame.
+/// How far a capsule's axis has to move, and along what, to be out of a mesh. Frame of the surface.
 struct WayOut {
-    btVector3 point;            ///< on the mesh
-    btVector3 normal;           ///< unit, out of the mesh
-    btScalar depth{};           ///< metres, >= 0
-    std::uint32_t triangle = 0; ///< of the shape
+    Vec3 point;       ///< on the mesh
+    Vec3 normal;      ///< unit, out of the mesh
+    double depth = 0; ///< metres, >= 0
+    Facet facet;      ///< that the point lies on
 };
 
 /// An axis that runs through a mesh while its ends do not tell: one exit for each of its pieces inside, the shortest
 /// of those along the faces where it enters and leaves and those past an edge beside it. `known[k]`: what is behind the
 /// surface at end k has its contact already, as always with a closed mesh.
-void ways_out(const Converted& mesh, const btVector3& a, const btVector3& b, const std::array<bool, 2>& known,
+void ways_out(const Surface& mesh, const Vec3& a, const Vec3& b, const std::array<bool, 2>& known,
               std::vector<WayOut>& out);
 /// The same for an open mesh whose faces stop it on both sides: at each face that the axis runs through, to the side
 /// where more of it is.
-void ways_through(const Converted& mesh, const btVector3& a, const btVector3& b, std::vector<WayOut>& out);
+void ways_through(const Surface& mesh, const Vec3& a, const Vec3& b, std::vector<WayOut>& out);
 
 } // namespace raycontact::bullet

@@ -36,10 +36,9 @@ void ContactFinder::take(PairState& state, const btDispatcherInfo& info) {
                 break;
             case Work::round: {
                 ++stats_.round_pairs;
-                // Bullet's algorithms report what is near, too: a ball at rest keeps its contact.
-                const btScalar threshold = gContactBreakingThreshold;
-                pair.add_round(btMin(threshold, pair.other().shape->getContactBreakingThreshold(threshold)),
-                               speculative, state.candidates);
+                const auto [found, is_first] = round_of_.try_emplace(&pair.other(), rounds_.size());
+                if (is_first) rounds_.emplace_back();
+                rounds_[found->second].push_back({pair, pair.margin(scene_.settings()), &state.candidates});
                 break;
             }
             case Work::bullet:
@@ -56,9 +55,14 @@ void ContactFinder::take(PairState& state, const btDispatcherInfo& info) {
     }
 }
 
-btScalar ContactFinder::margin(const LeafPair& pair) const {
-    const std::optional<double> metres = scene_.settings().speculative_margin;
-    return metres ? btScalar(*metres) : btScalar(speculative_share) * pair.smaller_diagonal();
+void ContactFinder::run_rounds() {
+    for (const std::vector<RoundPair>& pairs : rounds_) {
+        // Bullet's algorithms report what is near, too: a ball at rest keeps its contact.
+        const btScalar threshold = gContactBreakingThreshold;
+        const btCollisionShape& ball = *pairs[0].pair.other().shape;
+        add_rounds(pairs, btMin(threshold, ball.getContactBreakingThreshold(threshold)),
+                   scene_.settings().is_speculative());
+    }
 }
 
 // Vertices reach an open mesh from beyond its box; other methods follow what is apart. Speculative contacts have what
@@ -69,7 +73,7 @@ bool ContactFinder::apart(const LeafPair& pair) const {
     if (settings.method != Method::standard && settings.method != Method::certified) return false;
     if (!a.converted.shape->has_inside() || !b.converted.shape->has_inside()) return false;
     btScalar reach = 0;
-    if (settings.is_speculative()) reach = a.way + b.way + margin(pair);
+    if (settings.is_speculative()) reach = a.way + b.way + pair.margin(settings);
     const btVector3 around(reach, reach, reach);
     return !TestAabbAgainstAabb2(a.low - around, a.high + around, b.low, b.high);
 }
@@ -89,7 +93,7 @@ void ContactFinder::add_plane(PairState& state, const LeafPair& pair, const Half
     const btScalar size = diagonal(pair.mesh());
     // Four points would do for what rests; in a fast fall one that is left out may go deep.
     if (scene_.settings().is_speculative())
-        pair.add_plane(space, margin(pair), manifolds_.patch_reach * size, state.candidates);
+        pair.add_plane(space, pair.margin(scene_.settings()), manifolds_.patch_reach * size, state.candidates);
     else
         pair.add_plane(space, std::nullopt, size, state.candidates);
 }

@@ -20,9 +20,15 @@ public:
         : scene_(scene), manifolds_(manifolds), convex_(convex), faults_(faults), stats_(stats) {}
 
     /// First in a dispatch.
-    void begin() { batch_.clear(); }
-    /// What needs no batch. The rest waits.
+    void begin() {
+        batch_.clear();
+        rounds_.clear();
+        round_of_.clear();
+    }
+    /// What needs no other pair. The rest waits.
     void take(PairState& pair, const btDispatcherInfo& info);
+    /// Balls and capsules, each with all that it may meet.
+    void run_rounds();
     void run_batch();
 
 private:
@@ -36,7 +42,6 @@ private:
         bool swapped; ///< the scene's first body is the manifold's body 1
         btScalar reach;
     };
-    btScalar margin(const LeafPair& pair) const;
     bool apart(const LeafPair& pair) const;
     std::optional<HalfSpace> face_between(const LeafPair& pair) const;
     void add_plane(PairState& state, const LeafPair& pair, const HalfSpace& space);
@@ -49,7 +54,9 @@ private:
     Faults& faults_;
     DispatcherStats& stats_;
     std::vector<Entry> batch_;
-    std::vector<std::pair<Slots, std::uint32_t>> order_; ///< of the batch: pairs ascending, with their places in it
+    std::vector<std::vector<RoundPair>> rounds_;            ///< of one ball or capsule each
+    std::unordered_map<const Leaf*, std::size_t> round_of_; ///< no order of it shows
+    std::vector<std::pair<Slots, std::uint32_t>> order_;    ///< of the batch: pairs ascending, with their places in it
     std::vector<Pair> pairs_;
     std::unordered_map<const Shape*, std::weak_ptr<const Shape>> told_one_sided_;
 };

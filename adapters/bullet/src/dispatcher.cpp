@@ -37,8 +37,11 @@ namespace {
 /// Whether RayContact handles two shapes; for most pairs two type checks decide.
 bool for_us(const btCollisionShape& a, const btCollisionShape& b, ConvexShapes convex) {
     if (a.isConvex() && b.isConvex()) return false;
-    const unsigned in_a = kinds_in(a, convex), in_b = kinds_in(b, convex), partners = ~bit(Kind::other);
-    return ((in_a & bit(Kind::mesh)) && (in_b & partners)) || ((in_b & bit(Kind::mesh)) && (in_a & partners));
+    const unsigned in_a = kinds_in(a, convex), in_b = kinds_in(b, convex);
+    const auto both = [&](unsigned one, unsigned two) {
+        return (in_a & one && in_b & two) || (in_b & one && in_a & two);
+    };
+    return both(bit(Kind::mesh), ~bit(Kind::other)) || both(bit(Kind::field), bit(Kind::round));
 }
 
 bool is_whole(const btCollisionObjectWrapper& wrap) {
@@ -180,6 +183,8 @@ struct CollisionDispatcher::State {
         const bool asked = dispatcher.getNearCallback() != btCollisionDispatcher::defaultNearCallback;
         if (!asked && !dispatcher.needsCollision(a, b)) return leave_alone(*a, *b);
         PairState& state = state_of(pair, *a, *b);
+        objects.meet(*state.record0, *b);
+        objects.meet(*state.record1, *a);
         objects.refresh(*a, *state.record0, dispatch);
         objects.refresh(*b, *state.record1, dispatch);
         state.check_versions();
@@ -257,6 +262,7 @@ void CollisionDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cach
     }
 
     s.objects.refresh_pinned(s.dispatch);
+    s.finder.run_rounds();
     s.finder.run_batch();
     if (s.recorder) s.recorder->record();
     s.stats.pairs = s.work.size();
@@ -302,6 +308,7 @@ BodyId CollisionDispatcher::add_body(const btCollisionObject& object) {
     Objects& objects = state_->objects;
     if (Object* known = objects.find(object)) known->seen = Object::never; // it may have moved since the last dispatch
     const std::shared_ptr<Object> record = objects.refresh(object, state_->dispatch);
+    if (Objects::want_fields(*record)) objects.refresh(object, *record, state_->dispatch);
     if (std::vector<Fault> faults = objects.faults_of(object, *record); !faults.empty()) {
         objects.faults().take_back(&object);
         throw ObjectError(std::move(faults.front()));

@@ -5,6 +5,8 @@
 #include <round.h>
 #include <vectors.h>
 
+#include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
+
 #include <algorithm>
 
 namespace raycontact::bullet {
@@ -17,13 +19,11 @@ bool has_triangles(const Leaf& leaf) {
 
 /// triangle: as Candidate::triangle.
 PlaceName name_of_triangle(const Leaf& leaf, int triangle) {
-    if (!has_triangles(leaf)) return {};
     if (leaf.converted.names) return (*leaf.converted.names)[static_cast<std::size_t>(triangle)];
     return bullet::name_of_triangle(*leaf.shape, triangle);
 }
 
 PlaceName name_of_feature(const Leaf& leaf, const PointKey& key) {
-    if (!has_triangles(leaf)) return {};
     if (key.feature == FeatureKind::edges) return name_of_triangle(leaf, key.vertex / 3);
     const Shape& shape = *leaf.converted.shape;
     const auto vertices = shape.vertex_index(); // ascending
@@ -43,6 +43,12 @@ bool unsupported(const btCollisionShape& a, const btCollisionShape& b) {
 
 btScalar diagonal(const Leaf& leaf) {
     if (leaf.kind == Kind::plane) return BT_LARGE_FLOAT;
+    if (leaf.kind == Kind::round) return btScalar(size_of(round_of(*leaf.shape)));
+    if (!leaf.converted.shape) { // a height field that only balls meet
+        btVector3 low, high;
+        leaf.shape->getAabb(btTransform::getIdentity(), low, high);
+        return (high - low).length();
+    }
     const Vec3 a = leaf.converted.shape->box_min(), b = leaf.converted.shape->box_max();
     return to_bullet({b.x - a.x, b.y - a.y, b.z - a.z}).length();
 }
@@ -55,6 +61,8 @@ Work LeafPair::work() const {
     };
     const Kind one = kind(leaf0), two = kind(leaf1);
     const auto either = [&](Kind k) { return one == k || two == k; };
+    if (either(Kind::field) && either(Kind::round)) // a stretched field has no mesh
+        return mesh().stretch == no_stretch ? Work::round : Work::bullet;
     if (either(Kind::mesh)) {
         if (either(Kind::plane)) return Work::plane;
         if (either(Kind::round)) return Work::round;
@@ -104,21 +112,34 @@ void LeafPair::add_plane(const HalfSpace& space, std::optional<btScalar> near_by
     }
 }
 
-void LeafPair::add_round(btScalar near_by, bool speculative, std::vector<Candidate>& out) const {
+btScalar LeafPair::margin(const Settings& settings) const {
+    return settings.speculative_margin ? btScalar(*settings.speculative_margin)
+                                       : btScalar(speculative_share) * smaller_diagonal();
+}
+
+void add_rounds(std::span<const RoundPair> pairs, btScalar near_by, bool ahead) {
     static thread_local std::vector<RoundContact> found;
-    const Leaf& ball = other();
-    Round round = round_of(*ball.shape);
-    round.two_sided = is_two_sided();
-    round_contacts(mesh().converted, mesh().pose, round, ball.pose, near_by, found);
-    const std::size_t near_now = found.size();
-    if (speculative) first_touches(mesh().converted, mesh().pose, mesh().next, round, ball.pose, ball.next, found);
-    for (std::size_t i = 0; i < found.size(); ++i) {
-        const RoundContact& f = found[i];
-        Candidate c = candidate(false, f.place, f.point, f.point + f.normal * f.distance, -f.normal, f.distance);
-        c.triangle = static_cast<int>(mesh().converted.shape->triangle_index()[f.triangle]);
-        c.reach = btMin(diagonal(mesh()), 2 * round.radius + (round.ends[1] - round.ends[0]).length());
-        c.speculative = i >= near_now;
-        out.push_back(c);
+    static thread_local std::vector<Obstacle> obstacles;
+    obstacles.clear();
+    for (const RoundPair& p : pairs) {
+        const Leaf& mesh = p.pair.mesh();
+        const bool is_field = mesh.kind == Kind::field;
+        const Surface surface = is_field ? Surface(static_cast<const btHeightfieldTerrainShape&>(*mesh.shape))
+                                         : Surface(*mesh.converted.shape);
+        obstacles.push_back({surface, mesh.pose, mesh.next, is_field || p.pair.is_two_sided(), double(p.margin)});
+    }
+    const Leaf& ball = pairs[0].pair.other();
+    const Round round = round_of(*ball.shape);
+    round_contacts(round, ball.pose, ahead ? std::optional(ball.next) : std::nullopt, obstacles, double(near_by),
+                   found);
+    for (const RoundContact& f : found) {
+        const auto& [pair, margin, out] = pairs[f.obstacle];
+        Candidate c = pair.candidate(false, f.place, f.point, f.point + f.normal * f.distance, -f.normal, f.distance);
+        c.triangle = static_cast<int>(f.triangle);
+        (pair.mesh_is_0() ? c.name0 : c.name1) = f.name;
+        c.reach = pair.smaller_diagonal();
+        c.speculative = ahead && f.distance > 0;
+        out->push_back(c);
     }
 }
 
@@ -156,8 +177,11 @@ Candidate candidate_of(const Contact& contact, int child0, int child1, bool swap
 void name_places(Candidate& c, const Leaf& leaf0, const Leaf& leaf1) {
     const bool of_0 = c.key.vertex_body == 0;
     const int other = c.key.feature == FeatureKind::edges ? c.triangle / 3 : c.triangle;
-    c.name0 = of_0 ? name_of_feature(leaf0, c.key) : name_of_triangle(leaf0, other);
-    c.name1 = of_0 ? name_of_triangle(leaf1, other) : name_of_feature(leaf1, c.key);
+    const PlaceName none; // a height field's are known
+    if (has_triangles(leaf0) && c.name0 == none)
+        c.name0 = of_0 ? name_of_feature(leaf0, c.key) : name_of_triangle(leaf0, other);
+    if (has_triangles(leaf1) && c.name1 == none)
+        c.name1 = of_0 ? name_of_triangle(leaf1, other) : name_of_feature(leaf1, c.key);
 }
 
 } // namespace raycontact::bullet

@@ -6,6 +6,7 @@
 #include <plane.h>
 
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace raycontact::bullet {
@@ -19,6 +20,8 @@ bool unsupported(const btCollisionShape& a, const btCollisionShape& b);
 /// Its longest way through; a plane has no end.
 btScalar diagonal(const Leaf& leaf);
 
+struct RoundPair;
+
 /// Two leaves, and what of their contacts needs no batch, as candidates.
 struct LeafPair {
     const Leaf &leaf0, &leaf1;
@@ -27,7 +30,9 @@ struct LeafPair {
 
     Work work() const;
     btScalar smaller_diagonal() const { return btMin(diagonal(leaf0), diagonal(leaf1)); }
-    /// Of a mesh and something else.
+    /// Metres: of their speculative contacts.
+    btScalar margin(const Settings& settings) const;
+    /// Of a mesh and something else, or of a height field and a ball or capsule.
     const Leaf& mesh() const { return mesh_is_0() ? leaf0 : leaf1; }
     const Leaf& other() const { return mesh_is_0() ? leaf1 : leaf0; }
     /// Bullet's rule for convex shapes holds: each face of an open level stops them on both sides. What moves and is
@@ -40,17 +45,28 @@ struct LeafPair {
     /// next dispatch, which are speculative. reach: of each candidate.
     void add_plane(const HalfSpace& space, std::optional<btScalar> near_by, btScalar reach,
                    std::vector<Candidate>& out) const;
-    /// Where a ball or capsule is nearer to a mesh than `near_by`; also where it will touch first.
-    void add_round(btScalar near_by, bool speculative, std::vector<Candidate>& out) const;
     /// What a convex shape meets on its way, which would be through an open mesh before Bullet's algorithm sees it.
     void add_cast(std::vector<Candidate>& out) const;
 
 private:
-    bool mesh_is_0() const { return leaf0.kind == Kind::mesh; }
+    friend void add_rounds(std::span<const RoundPair> pairs, btScalar near_by, bool ahead);
+    bool mesh_is_0() const {
+        return leaf0.kind == Kind::mesh || (leaf0.kind == Kind::field && leaf1.kind != Kind::mesh);
+    }
     /// normal: unit, from the other leaf to the mesh. feature_of_mesh: the key names a feature of the mesh.
     Candidate candidate(bool feature_of_mesh, int feature, const btVector3& on_mesh, const btVector3& on_other,
                         const btVector3& normal, btScalar distance) const;
 };
+
+/// A ball or capsule with a mesh or height field; where its candidates go.
+struct RoundPair {
+    LeafPair pair;
+    btScalar margin; ///< a step lower than this is no wall
+    std::vector<Candidate>* out;
+};
+/// Of one ball or capsule with all that it may meet, since what ends where another goes on is no edge: where it is
+/// nearer than near_by. ahead: also what it will touch, without what it will only pass.
+void add_rounds(std::span<const RoundPair> pairs, btScalar near_by, bool ahead);
 
 /// A contact of two meshes. swapped: its first body is the manifold's body 1.
 Candidate candidate_of(const Contact& contact, int child0, int child1, bool swapped);

@@ -133,6 +133,18 @@ void Objects::refresh(const btCollisionObject& object, Object& record, std::uint
     record.seen = dispatch;
 }
 
+bool Objects::want_fields(Object& record) {
+    bool any = false;
+    for (Leaf& leaf : record.leaves) any = std::exchange(leaf.unmet, false) || any;
+    if (any) record.seen = Object::never;
+    return any;
+}
+
+void Objects::meet(Object& record, const btCollisionObject& other) const {
+    const bool any = std::ranges::any_of(record.leaves, &Leaf::unmet);
+    if (any && (kinds_in(*other.getCollisionShape(), convex_) & bit(Kind::mesh))) want_fields(record);
+}
+
 void Objects::place_object(const btCollisionObject& object, Object& record) {
     Placement whole;
     const bool alone = !object.getCollisionShape()->isCompound();
@@ -141,7 +153,8 @@ void Objects::place_object(const btCollisionObject& object, Object& record) {
     for (Leaf& leaf : record.leaves)
         if (leaf.kind != Kind::other && !record.misplaced()) place_leaf(object, record, leaf, whole);
     std::vector<Fault> faults = faults_of(object, record);
-    if (!faults.empty()) mended_.left_out.push_back(&object);
+    auto& left_out = mended_.left_out;
+    if (!faults.empty() && std::ranges::find(left_out, &object) == left_out.end()) left_out.push_back(&object);
     faults_.set(object, std::move(faults));
 }
 
@@ -191,7 +204,7 @@ void Objects::place_leaf(const btCollisionObject& object, Object& record, Leaf& 
             if (leaf.kind != Kind::plane) record.version = ++versions_; // a plane has no mesh that would be another
         }
         if (leaf.unusable) return;
-        if (!in_scene(leaf.kind)) {
+        if (!in_scene(leaf.kind) || leaf.unmet) {
             check_numbers(*leaf.shape); // read anew in every step
         } else if (!leaf.body.valid() && !leaf.flat) {
             unusable = true;
@@ -206,7 +219,7 @@ void Objects::place_leaf(const btCollisionObject& object, Object& record, Leaf& 
         return;
     }
     leaf.fault.clear();
-    if (!in_scene(leaf.kind) || leaf.flat) return;
+    if (!in_scene(leaf.kind) || leaf.flat || leaf.unmet) return;
     leaf.way = 0;
     if (leaf.body.valid()) {
         scene_.set_pose(leaf.body, to_pose(leaf.pose));
@@ -235,10 +248,10 @@ void Objects::expect(const btCollisionObject& object, Object& record) {
         btTransformUtil::integrateTransform(record.pose, velocity, body->getAngularVelocity(), ahead_, then);
     }
     for (Leaf& leaf : record.leaves) {
-        if ((!leaf.body.valid() && leaf.kind != Kind::round) || leaf.left_out()) continue;
+        if ((!leaf.body.valid() && leaf.kind != Kind::round && !leaf.unmet) || leaf.left_out()) continue;
         try {
             leaf.next = place(then * leaf.local).pose;
-            if (leaf.kind == Kind::round) continue;
+            if (!leaf.body.valid()) continue;
             scene_.set_next_pose(leaf.body, to_pose(leaf.next));
             leaf.way = longest_way(*leaf.converted.shape, leaf.pose, leaf.next);
         } catch (const InputError&) {
@@ -256,6 +269,7 @@ void Objects::make_leaves(const btCollisionObject& object, Object& record) {
                   leaf.local = local;
                   leaf.kind = kind_of(shape, convex_);
                   if (in_scene(leaf.kind)) leaf.form = form_of(shape);
+                  leaf.unmet = leaf.kind == Kind::field;
               });
     record.version = ++versions_;
     record.stale = false;

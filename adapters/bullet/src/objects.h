@@ -34,6 +34,7 @@ struct Leaf {
     btScalar way = 0;      ///< how far its points go until then, at most; also as the scene expects it
     bool is_fixed = false; ///< its object is static or kinematic
     bool flat = false;     ///< a convex shape without a mesh to stand for it
+    bool unmet = false;    ///< a height field that no mesh has met: none is made of it, balls need none
     std::string fault;     ///< why it is left out; empty: it takes part
     bool unusable = false; ///< no mesh can be made of it, which is its fault; else its transform
 
@@ -94,6 +95,10 @@ public:
     std::shared_ptr<Object> refresh(const btCollisionObject& object, std::uint64_t dispatch);
     /// The same for a record that is known.
     void refresh(const btCollisionObject& object, Object& record, std::uint64_t dispatch);
+    /// Before refresh(): whom it is about to meet.
+    void meet(Object& record, const btCollisionObject& other) const;
+    /// From the next refresh() on its height fields are meshes, as add_body() asks. False: nothing changes.
+    static bool want_fields(Object& record);
     /// Null where nobody holds one.
     Object* find(const btCollisionObject& object) const;
     /// That a query may take, for the mesh that the dispatches have; no_stretch where none is known.

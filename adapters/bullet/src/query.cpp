@@ -98,7 +98,7 @@ void Queries::run_pair(Placed& a, Placed& b, const btCollisionObjectWrapper& who
         pair.add_plane(pair.plane(), std::nullopt, 0, found);
         break;
     case Work::round:
-        pair.add_round(near_by, false, found);
+        add_rounds(std::array{RoundPair{pair, pair.margin(scene_.settings()), &found}}, near_by, false);
         break;
     case Work::batch:
         if (near_by > 0 && (a.leaf.kind == Kind::convex || b.leaf.kind == Kind::convex))

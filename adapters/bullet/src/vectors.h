@@ -5,6 +5,8 @@
 
 #include <LinearMath/btVector3.h>
 
+#include <cmath>
+
 namespace raycontact::bullet {
 
 inline Vec3 to_vec(const btVector3& v) {
@@ -20,17 +22,54 @@ inline double dot_in_double(const btVector3& a, const btVector3& b) {
     return double(a.x()) * double(b.x()) + double(a.y()) * double(b.y()) + double(a.z()) * double(b.z());
 }
 
+inline Vec3 operator+(const Vec3& a, const Vec3& b) {
+    return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+inline Vec3 operator-(const Vec3& a, const Vec3& b) {
+    return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+inline Vec3 operator-(const Vec3& a) {
+    return {-a.x, -a.y, -a.z};
+}
+inline Vec3 operator*(double s, const Vec3& a) {
+    return {s * a.x, s * a.y, s * a.z};
+}
+inline double dot(const Vec3& a, const Vec3& b) {
+    return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+inline Vec3 cross(const Vec3& a, const Vec3& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+inline double length2(const Vec3& a) {
+    return dot(a, a);
+}
+inline double length(const Vec3& a) {
+    return std::sqrt(length2(a));
+}
+
+/// A direction, from the body frame into the world and back.
+inline Vec3 turned(const Pose& pose, const Vec3& v) {
+    const auto& r = pose.rotation;
+    return {r[0] * v.x + r[1] * v.y + r[2] * v.z, r[3] * v.x + r[4] * v.y + r[5] * v.z,
+            r[6] * v.x + r[7] * v.y + r[8] * v.z};
+}
+inline Vec3 turned_back(const Pose& pose, const Vec3& v) {
+    const auto& r = pose.rotation;
+    return {r[0] * v.x + r[3] * v.y + r[6] * v.z, r[1] * v.x + r[4] * v.y + r[7] * v.z,
+            r[2] * v.x + r[5] * v.y + r[8] * v.z};
+}
+
 /// Where two lines come closest, in parts of their directions: a + first x along, p + second x edge.
 struct ClosestOnLines {
-    btScalar first, second;
+    double first, second;
 };
-/// square: (|along| |edge|)^2 - (along . edge)^2, which is not 0: they are not parallel.
-inline ClosestOnLines closest_on_lines(const btVector3& a, const btVector3& along, const btVector3& p,
-                                       const btVector3& edge, btScalar square) {
-    const btVector3 between = a - p;
-    const btScalar mixed = along.dot(edge);
-    return {(mixed * edge.dot(between) - edge.length2() * along.dot(between)) / square,
-            (along.length2() * edge.dot(between) - mixed * along.dot(between)) / square};
+/// square: |along x edge|^2, which is not 0: they are not parallel.
+inline ClosestOnLines closest_on_lines(const Vec3& a, const Vec3& along, const Vec3& p, const Vec3& edge,
+                                       double square) {
+    const Vec3 between = a - p;
+    const double mixed = dot(along, edge);
+    return {(mixed * dot(edge, between) - length2(edge) * dot(along, between)) / square,
+            (length2(along) * dot(edge, between) - mixed * dot(along, between)) / square};
 }
 
 } // namespace raycontact::bullet

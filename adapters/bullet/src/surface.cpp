@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <surface.h>
+#include <vectors.h>
+
+#include <raycontact/query.h>
+
+#include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
+#include <BulletCollision/CollisionShapes/btTriangleCallback.h>
+
+#include <algorithm>
+
+namespace raycontact::bullet {
+
+namespace {
+
+void add(const std::array<Vec3, 3>& corner, std::uint32_t triangle, PlaceName name, std::vector<Facet>& out) {
+    Facet f{corner, cross(corner[1] - corner[0], corner[2] - corner[0]), corner[0], corner[0], triangle, name};
+    const double area = length(f.normal);
+    if (!(area > 0)) return;
+    f.normal = (1 / area) * f.normal;
+    for (const Vec3& c : corner) {
+        f.low = {std::min(f.low.x, c.x), std::min(f.low.y, c.y), std::min(f.low.z, c.z)};
+        f.high = {std::max(f.high.x, c.x), std::max(f.high.y, c.y), std::max(f.high.z, c.z)};
+    }
+    out.push_back(f);
+}
+
+} // namespace
+
+// Ericson, Real-Time Collision Detection (2005), 5.1.5.
+Nearest nearest(const Facet& facet, const Vec3& p) {
+    const auto& [a, b, c] = facet.corner;
+    const auto at = [&](const Vec3& q, unsigned on) { return Nearest{q, length2(p - q), on}; };
+    const Vec3 ab = b - a, ac = c - a, ap = p - a, bp = p - b, cp = p - c;
+    const double ab_ap = dot(ab, ap), ac_ap = dot(ac, ap), ab_bp = dot(ab, bp), ac_bp = dot(ac, bp),
+                 ab_cp = dot(ab, cp), ac_cp = dot(ac, cp);
+    if (ab_ap <= 0 && ac_ap <= 0) return at(a, 1);
+    if (ab_bp >= 0 && ac_bp <= ab_bp) return at(b, 2);
+    if (ac_cp >= 0 && ab_cp <= ac_cp) return at(c, 4);
+    const double of_c = ab_ap * ac_bp - ab_bp * ac_ap, of_b = ab_cp * ac_ap - ab_ap * ac_cp,
+                 of_a = ab_bp * ac_cp - ab_cp * ac_bp;
+    if (of_c <= 0 && ab_ap >= 0 && ab_bp <= 0) return at(a + (ab_ap / (ab_ap - ab_bp)) * ab, 3);
+    if (of_b <= 0 && ac_ap >= 0 && ac_cp <= 0) return at(a + (ac_ap / (ac_ap - ac_cp)) * ac, 5);
+    if (of_a <= 0 && ac_bp >= ab_bp && ab_cp >= ac_cp)
+        return at(b + ((ac_bp - ab_bp) / (ac_bp - ab_bp + ab_cp - ac_cp)) * (c - b), 6);
+    // Along the normal: the sum of three corners would round by the length of a thin triangle.
+    return at(p - dot(ap, facet.normal) * facet.normal, 7);
+}
+
+void Surface::near(const Vec3& low, const Vec3& high, std::vector<Facet>& out) const {
+    if (shape_) {
+        static thread_local std::vector<std::uint32_t> triangles;
+        triangles_in_box(*shape_, low, high, triangles);
+        for (const std::uint32_t t : triangles) {
+            const auto& ids = shape_->triangles()[t];
+            add({shape_->vertices()[ids[0]], shape_->vertices()[ids[1]], shape_->vertices()[ids[2]]}, t, {}, out);
+        }
+        return;
+    }
+    struct Gather final : btTriangleCallback {
+        std::vector<Facet>& out;
+        explicit Gather(std::vector<Facet>& o) : out(o) {}
+        void processTriangle(btVector3* t, int part, int index) override {
+            add({to_vec(t[0]), to_vec(t[1]), to_vec(t[2])}, 0, {part, index}, out);
+        }
+    } gather(out);
+    field_->processAllTriangles(&gather, to_bullet(low), to_bullet(high));
+}
+
+double Surface::size() const {
+    if (shape_) return shape_->radius();
+    btVector3 low, high;
+    field_->getAabb(btTransform::getIdentity(), low, high);
+    return double((high - low).length());
+}
+
+} // namespace raycontact::bullet
