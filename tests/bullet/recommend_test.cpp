@@ -202,6 +202,52 @@ TEST(Recommend, TheSlopGoesByTheSmallestBodyThatMoves) {
     EXPECT_NEAR(1000 * double(other.world.getSolverInfo().m_linearSlop), 0.1, 1e-6);
 }
 
+// A body on a spring of 2000 N/m for each of its points, of the dispatcher's pairs and of Bullet's own.
+TEST(Recommend, SoftContactsStaySoft) {
+    struct Soft {
+        const char* name;
+        bool on_mesh;
+        int points;
+        std::function<std::unique_ptr<btCollisionShape>()> make;
+    };
+    const auto half = btScalar(0.1);
+    const auto box = [&]() -> std::unique_ptr<btCollisionShape> {
+        return std::make_unique<btBoxShape>(btVector3(half, half, half));
+    };
+    const auto ball = [&]() -> std::unique_ptr<btCollisionShape> { return std::make_unique<btSphereShape>(half); };
+    const auto mesh = [&]() -> std::unique_ptr<btCollisionShape> {
+        return std::make_unique<bullet::MeshShape>(Shape::make(box_mesh(0.2, 0.2, 0.2)));
+    };
+    const Soft cases[] = {{"mesh", true, 4, mesh},
+                          {"ball on a mesh", true, 1, ball},
+                          {"box on a mesh", true, 4, box},
+                          {"ball on a box", false, 1, ball},
+                          {"box on a box", false, 4, box}};
+    for (const Soft& c : cases)
+        for (const int hertz : {60, 240})
+            for (const double damping : {20.0, 200.0}) {
+                TestWorld w;
+                btRigidBody& ground =
+                    c.on_mesh ? w.add_mesh(Shape::make(box_mesh(4, 4, 1)), 0, at(0, 0, -0.5))
+                              : w.add(std::make_unique<btBoxShape>(btVector3(2, 2, btScalar(0.5))), 0, at(0, 0, -0.5));
+                btRigidBody& body = w.add(c.make(), 1, at(0.03, 0.02, 0.1));
+                bullet::recommend(w.world);
+                body.setContactStiffnessAndDamping(2000, btScalar(damping));
+                ground.setContactStiffnessAndDamping(btScalar(1e18), btScalar(0.1));
+                for (int i = 0; i < 5 * hertz; ++i) w.world.stepSimulation(btScalar(1.0 / hertz), 0);
+                const double right = 9.81 / 2000 / c.points,
+                             sunk = 0.1 - double(body.getWorldTransform().getOrigin().z());
+                EXPECT_NEAR(sunk, right, 0.02 * right) << c.name << ' ' << hertz << ' ' << damping;
+                EXPECT_LT(double(body.getLinearVelocity().length()), 1e-3) << c.name << ' ' << hertz << ' ' << damping;
+                // Asleep and awake again it lies as deep.
+                body.forceActivationState(ISLAND_SLEEPING);
+                w.steps(5);
+                body.forceActivationState(DISABLE_DEACTIVATION);
+                for (int i = 0; i < hertz; ++i) w.world.stepSimulation(btScalar(1.0 / hertz), 0);
+                EXPECT_NEAR(0.1 - double(body.getWorldTransform().getOrigin().z()), right, 0.02 * right) << c.name;
+            }
+}
+
 TEST(Recommend, RefusesWhatIsOutOfRange) {
     TestWorld w;
     const btContactSolverInfo before = w.world.getSolverInfo();

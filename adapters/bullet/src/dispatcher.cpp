@@ -5,12 +5,14 @@
 #include <prefetch.h>
 #include <query.h>
 #include <raycontact/error.h>
+#include <told.h>
 #ifdef RAYCONTACT_RECORDING
 #include <raycontact/recorder.h>
 #endif
 
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 #include <BulletCollision/CollisionDispatch/btCollisionWorld.h>
+#include <BulletDynamics/Dynamics/btDynamicsWorld.h>
 
 #include <optional>
 #include <string>
@@ -80,6 +82,13 @@ struct CollisionDispatcher::State {
             const int state = object.getActivationState();
             if (state == DISABLE_SIMULATION || state == DISABLE_DEACTIVATION) objects.report_lost(object, dispatch);
         }
+    }
+
+    /// Of a dynamic world that was attached.
+    const btContactSolverInfo* solver_of(const btOverlappingPairCache* cache) const {
+        if (world == nullptr || cache != world_cache) return nullptr;
+        auto* dynamics = dynamic_cast<btDynamicsWorld*>(world);
+        return dynamics ? &dynamics->getSolverInfo() : nullptr;
     }
 
     // Of two that do not move one may be disabled by Bullet, which is a fault.
@@ -277,6 +286,9 @@ void CollisionDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cach
         s.touches.update(pair, info.m_timeStep);
         if (s.scene.settings().is_speculative()) pair.turn_round_what_bounces(info.m_timeStep); // after the callbacks
     }
+    if (const btContactSolverInfo* solver = s.solver_of(cache))
+        for (int i = 0; i < getNumManifolds(); ++i)
+            keep_soft(*getManifoldByIndexInternal(i), *solver, info.m_timeStep);
     s.touches.done();
     s.stats.touching = s.touches.count();
     s.stats.shapes_made = s.objects.shapes().made() - made_before;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <pair.h>
+#include <told.h>
 
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
@@ -12,31 +13,37 @@ namespace raycontact::bullet {
 
 namespace {
 
-// As Bullet's solver asks, with its own m_restitutionVelocityThreshold; and what will touch before the next step.
-bool bounces(const btManifoldPoint& point, const PairState& state, btScalar seconds) {
-    if (!(point.m_combinedRestitution > 0)) return false;
+/// As Bullet's solver asks, with its own m_restitutionVelocityThreshold.
+constexpr btScalar least_approach = btScalar(0.2);
+/// Cosine from which on two normals are of one place.
+constexpr btScalar like = btScalar(0.9);
+
+/// Metres a second, along the point's normal.
+btScalar approach_at(const btManifoldPoint& point, const PairState& state) {
     const btVector3 speed =
         velocity_at(*state.object0, point.m_positionWorldOnA) - velocity_at(*state.object1, point.m_positionWorldOnB);
-    const btScalar approach = -speed.dot(point.m_normalWorldOnB);
-    return approach > btScalar(0.2) && approach * seconds >= point.getDistance();
+    return -speed.dot(point.m_normalWorldOnB);
 }
 
-// Bullet takes gap and slop, by the length of the step, off the speed that restitution gives back; nothing of a depth
-// that no slop reaches. The depth itself must not be undone.
-void turn_round(btManifoldPoint& point, btScalar depth, btScalar seconds) {
-    constexpr int both = BT_CONTACT_FLAG_HAS_CONTACT_ERP | BT_CONTACT_FLAG_HAS_CONTACT_CFM;
-    if ((point.m_contactPointFlags & (both | BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING))
-        == BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING) {
-        // Bullet would pass over stiffness and damping now; and they lie where the two numbers go.
-        point.m_contactCFM = 1
-                             / btMax(seconds * point.m_combinedContactStiffness1 + point.m_combinedContactDamping1,
-                                     btScalar(SIMD_EPSILON));
-        point.m_contactPointFlags |= BT_CONTACT_FLAG_HAS_CONTACT_CFM;
-    }
-    point.m_contactERP = 0;
-    point.m_contactPointFlags |= BT_CONTACT_FLAG_HAS_CONTACT_ERP;
-    point.m_distance1 = -depth;
+btVector3 acceleration_of(const btCollisionObject& object) {
+    const btRigidBody* body = btRigidBody::upcast(&object);
+    if (body == nullptr || body->isStaticOrKinematicObject()) return btVector3(0, 0, 0);
+    return body->getInvMass() * body->getLinearFactor() * body->getTotalForce();
 }
+
+/// Motion along a normal towards a surface, in Bullet's steps: speed is changed, then place by the changed speed. Its
+/// energy, per kilogram, is the same in each step of a free fall.
+struct Fall {
+    btScalar pull, seconds; ///< pull: m/s^2, towards the surface; not negative
+    btScalar energy(btScalar gap, btScalar speed) const {
+        return speed * speed / 2 + pull * (gap + speed * seconds / 2);
+    }
+    /// The speed away from the surface that has this energy after a step that begins at a gap; negative: none has.
+    btScalar speed_away(btScalar gap, btScalar energy) const {
+        const btScalar half = pull * seconds / 2, left = energy - pull * gap;
+        return left < 0 ? -1 : btSqrt(half * half + 2 * left) - half;
+    }
+};
 
 } // namespace
 
@@ -106,17 +113,56 @@ void PairState::name_places() {
     for (Candidate& c : candidates) bullet::name_places(c, leaf0(c.key), leaf1(c.key));
 }
 
-void PairState::turn_round_what_bounces(btScalar seconds) const {
+// What is turned round above the surface gives the energy of that height away: it rises as high as from the surface.
+// What would not rise to where it is comes to the surface first, and is turned round in the next step. The point that
+// goes deepest speaks for all with its normal: a body that comes flat stays so.
+void PairState::turn_round_what_bounces(btScalar seconds) {
+    struct Bounce {
+        btManifoldPoint* point;
+        btScalar gap, approach, pull;
+        bool speculative;
+        bool touches(btScalar in) const { return (approach + pull * in) * in >= gap; }
+    };
+    static thread_local std::vector<Bounce> bounces;
+    bounces.clear();
+    const btVector3 pull = acceleration_of(*object1) - acceleration_of(*object0);
     for (btPersistentManifold* manifold : patches.manifolds()) {
         for (int i = 0; i < manifold->getNumContacts(); ++i) {
             btManifoldPoint& point = manifold->getContactPoint(i);
-            if (point.getDistance() < 0 || !bounces(point, *this, seconds)) continue;
-            const PointKey key = CollisionDispatcher::key(point);
-            const bool found =
-                std::ranges::any_of(candidates, [&](const Candidate& c) { return c.speculative && c.key == key; });
-            if (!found) continue; // held, or touching: as without speculative contacts
-            turn_round(point, btMin(diagonal(leaf0(key)), diagonal(leaf1(key))), seconds);
+            const btScalar approach = approach_at(point, *this);
+            if (!(point.m_combinedRestitution > 0 && approach > least_approach)) continue;
+            const auto found = std::ranges::find(candidates, CollisionDispatcher::key(point), &Candidate::key);
+            if (found == candidates.end()) continue; // held
+            bounces.push_back({&point, point.getDistance(), approach,
+                               btMax(pull.dot(point.m_normalWorldOnB), btScalar(0)), found->speculative});
         }
+    }
+    const auto alike = [](const btVector3& a, const btVector3& normal) { return a.dot(normal) > like; };
+    const std::vector<Owed> owed = std::exchange(owed_, {});
+    for (const Bounce& b : bounces) {
+        btManifoldPoint& point = *b.point;
+        const btVector3& normal = point.m_normalWorldOnB;
+        const auto before = std::ranges::find_if(owed, [&](const Owed& o) { return alike(o.normal, normal); });
+        if (before == owed.end() && !b.speculative) continue; // touching: as without speculative contacts
+        const Bounce* first = &b;
+        for (const Bounce& other : bounces)
+            if (alike(other.point->m_normalWorldOnB, normal)
+                && other.gap - other.approach * seconds < first->gap - first->approach * seconds)
+                first = &other;
+        const Fall fall{first->pull, seconds};
+        const btScalar energy = before != owed.end() ? before->energy : fall.energy(first->gap, first->approach);
+        const btScalar away =
+            fall.speed_away(first->gap, point.m_combinedRestitution * point.m_combinedRestitution * energy);
+        if (away < 0 && first->touches(seconds)
+            && std::ranges::none_of(owed_, [&](const Owed& o) { return alike(o.normal, normal); }))
+            owed_.push_back({normal, energy});
+        if (away < 0 || !b.touches(seconds)) {
+            point.m_combinedRestitution = 0; // else Bullet would stop it above the surface
+            continue;
+        }
+        point.m_combinedRestitution = away / first->approach;
+        const PointKey key = CollisionDispatcher::key(point);
+        turn_round(point, btMin(diagonal(leaf0(key)), diagonal(leaf1(key))), seconds);
     }
 }
 

@@ -66,7 +66,7 @@ public:
     /// For gContactAddedCallback.
     void name_places();
     /// After the callbacks: Bullet's solver is to give back what restitution says of speculative contacts.
-    void turn_round_what_bounces(btScalar seconds) const;
+    void turn_round_what_bounces(btScalar seconds);
     /// No contacts from now on, until the next update.
     void clear();
 
@@ -81,9 +81,16 @@ private:
     const Leaf& leaf0(const PointKey& key) const { return record0->leaves[static_cast<std::size_t>(key.child0)]; }
     const Leaf& leaf1(const PointKey& key) const { return record1->leaves[static_cast<std::size_t>(key.child1)]; }
 
+    /// What comes to the surface before it bounces.
+    struct Owed {
+        btVector3 normal;
+        btScalar energy; ///< per kilogram, with which it came
+    };
+
     btCollisionDispatcher& dispatcher_;
     Touches& touches_;
     std::vector<ChildPair> children_;
+    std::vector<Owed> owed_; ///< of the step before
     std::uint64_t version0_ = 0, version1_ = 0;
 };
 

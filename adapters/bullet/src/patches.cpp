@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <patches.h>
-
+#include <told.h>
 #include <vectors.h>
 
 #include <raycontact/manifold.h>
@@ -48,21 +48,6 @@ btVector3 middle(const btVector3& a, const btVector3& b) {
     return (a + b) * btScalar(0.5);
 }
 
-void combine_materials(btManifoldPoint& p, const btCollisionObject* a, const btCollisionObject* b) {
-    p.m_combinedFriction = btManifoldResult::calculateCombinedFriction(a, b);
-    p.m_combinedRestitution = btManifoldResult::calculateCombinedRestitution(a, b);
-    p.m_combinedRollingFriction = btManifoldResult::calculateCombinedRollingFriction(a, b);
-    p.m_combinedSpinningFriction = btManifoldResult::calculateCombinedSpinningFriction(a, b);
-    const int flags = a->getCollisionFlags() | b->getCollisionFlags();
-    if (flags & btCollisionObject::CF_HAS_CONTACT_STIFFNESS_DAMPING) {
-        p.m_combinedContactDamping1 = btManifoldResult::calculateCombinedContactDamping(a, b);
-        p.m_combinedContactStiffness1 = btManifoldResult::calculateCombinedContactStiffness(a, b);
-        p.m_contactPointFlags |= BT_CONTACT_FLAG_CONTACT_STIFFNESS_DAMPING;
-    }
-    if (flags & btCollisionObject::CF_HAS_FRICTION_ANCHOR) p.m_contactPointFlags |= BT_CONTACT_FLAG_FRICTION_ANCHOR;
-    btPlaneSpace1(p.m_normalWorldOnB, p.m_lateralFrictionDir1, p.m_lateralFrictionDir2);
-}
-
 btManifoldPoint to_point(const Candidate& c, const btTransform& pose0, const btTransform& pose1,
                          const btCollisionObject* a, const btCollisionObject* b) {
     btManifoldPoint p(pose0.invXform(c.on0), pose1.invXform(c.on1), c.normal, c.distance);
@@ -75,6 +60,7 @@ btManifoldPoint to_point(const Candidate& c, const btTransform& pose0, const btT
     p.m_contactPointFlags =
         flag_ours | (c.key.vertex_body == 0 ? 0 : flag_vertex_on_1) | static_cast<int>(c.key.feature) << feature_shift;
     combine_materials(p, a, b);
+    btPlaneSpace1(p.m_normalWorldOnB, p.m_lateralFrictionDir1, p.m_lateralFrictionDir2);
     return p;
 }
 
@@ -242,6 +228,7 @@ void Patches::update(const std::vector<Candidate>& candidates, const btTransform
         }
         for (const std::size_t i : patch.held) {
             btManifoldPoint& p = m.getContactPoint(index_of(m, old[i].key));
+            take_back(p, object0_, object1_);
             p.m_positionWorldOnA = old[i].on0;
             p.m_positionWorldOnB = old[i].on1;
             p.m_distance1 = old[i].distance;

@@ -57,7 +57,8 @@ void recommend(btDiscreteDynamicsWorld& world, const SolverSettings& settings) {
     info.m_erp2 = btScalar(settings.erp);
     info.m_numIterations = settings.iterations;
     info.m_splitImpulse = 1;
-    info.m_splitImpulsePenetrationThreshold = 0; // Bullet's -0.04 leaves shallower contacts to bounce
+    // Bullet's -0.04 leaves shallower contacts to bounce. Not 0: what a soft contact is told as (told.h) is between.
+    info.m_splitImpulsePenetrationThreshold = -4 * SIMD_EPSILON * btMax(info.m_linearSlop, btScalar(1e-5));
     // Directions fixed by the normal: a friction impulse carried over means the same in the next step.
     info.m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS | SOLVER_DISABLE_VELOCITY_DEPENDENT_FRICTION_DIRECTION;
 }

@@ -20,8 +20,8 @@ constexpr int coming = 1 << 20; ///< added to the places of what is touched late
 /// Cosine from which on what is near now is what is touched then.
 constexpr double alike_from = 0.9, same_from = 1 - 1e-6;
 
-/// A sine, and a part of the radius. What comes at a smaller angle, and would be passed by less, as the next facet of a
-/// bowl, is not told before it is near: until then something else carries the round, and the solver would brake it.
+/// A sine, and a part of the radius. To what lies on something, what comes at a smaller angle and would be passed by
+/// less, as the next facet of a bowl, is not told before it is near: the solver would brake it for what carries it.
 constexpr double glancing = 0.1, shallow = 0.05;
 
 } // namespace
@@ -108,7 +108,7 @@ void round_contacts(const Round& round, const btTransform& pose, const std::opti
     }
     count = {};
     for (const FirstTouch& t : touched) {
-        const bool skims = t.into < glancing * t.length && t.into < shallow * round.radius;
+        const bool skims = !near.empty() && t.into < glancing * t.length && t.into < shallow * round.radius;
         if (told[index_of(t)] || skims) continue;
         out.push_back(later(t.spot, coming + t.spot.part + 3 * count[static_cast<std::size_t>(t.spot.part)]++));
     }
