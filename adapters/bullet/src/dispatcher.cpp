@@ -12,6 +12,7 @@
 
 #include <BulletCollision/BroadphaseCollision/btOverlappingPairCache.h>
 #include <BulletCollision/CollisionDispatch/btCollisionWorld.h>
+#include <BulletCollision/CollisionDispatch/btGhostObject.h>
 #include <BulletDynamics/Dynamics/btDynamicsWorld.h>
 
 #include <optional>
@@ -69,6 +70,20 @@ struct CollisionDispatcher::State {
         : dispatcher(d), manifolds(m), convex(c), scene(settings), objects(scene, c), queries(settings, objects, c, d),
           finder(scene, manifolds, c, objects.faults(), stats) {
         objects.faults().set_callback(print);
+    }
+
+    /// Whether these are not the pairs of a step but those of one object, as a character asks about in the midst of a
+    /// step. Without an attached world only ghosts tell.
+    bool is_query(btOverlappingPairCache& cache) const {
+        if (world != nullptr) return &cache != world_cache;
+        for (int i = 0; i < cache.getNumOverlappingPairs(); ++i)
+            for (const btBroadphaseProxy* proxy :
+                 {cache.getOverlappingPairArray()[i].m_pProxy0, cache.getOverlappingPairArray()[i].m_pProxy1}) {
+                auto* object = static_cast<btCollisionObject*>(proxy->m_clientObject);
+                auto* ghost = dynamic_cast<btPairCachingGhostObject*>(object);
+                if (ghost && ghost->getOverlappingPairCache() == &cache) return true;
+            }
+        return false;
     }
 
     // Before the pairs are visited: it may find more of them.
@@ -243,6 +258,14 @@ CollisionDispatcher::~CollisionDispatcher() = default;
 void CollisionDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cache, const btDispatcherInfo& info,
                                                     btDispatcher* dispatcher) {
     State& s = *state_;
+    if (s.is_query(*cache)) {
+        for (int i = 0; i < cache->getNumOverlappingPairs(); ++i) {
+            btBroadphasePair& pair = cache->getOverlappingPairArray()[i];
+            if (PairAlgorithm::of(pair.m_algorithm)) s.drop_algorithm(pair); // from before a world was attached
+        }
+        btCollisionDispatcher::dispatchAllCollisionPairs(cache, info, dispatcher);
+        return;
+    }
     ++s.dispatch;
     s.stats = {};
     s.ours.clear();
@@ -287,8 +310,7 @@ void CollisionDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cach
         if (s.scene.settings().is_speculative()) pair.turn_round_what_bounces(info.m_timeStep); // after the callbacks
     }
     if (const btContactSolverInfo* solver = s.solver_of(cache))
-        for (int i = 0; i < getNumManifolds(); ++i)
-            keep_soft(*getManifoldByIndexInternal(i), *solver, info.m_timeStep);
+        for (int i = 0; i < getNumManifolds(); ++i) keep_soft(*getManifoldByIndexInternal(i), *solver, info.m_timeStep);
     s.touches.done();
     s.stats.touching = s.touches.count();
     s.stats.shapes_made = s.objects.shapes().made() - made_before;
@@ -355,6 +377,28 @@ void CollisionDispatcher::refresh(const btCollisionObject& object) {
     if (object.getCollisionShape())
         each_leaf(*object.getCollisionShape(), btTransform::getIdentity(),
                   [&](const btCollisionShape& shape, const btTransform&) { state_->objects.shapes().forget(shape); });
+}
+
+void CollisionDispatcher::forget(btCollisionWorld& world) {
+    State& s = *state_;
+    const auto clean = [&](btOverlappingPairCache& cache) {
+        for (int i = 0; i < cache.getNumOverlappingPairs(); ++i)
+            cache.cleanOverlappingPair(cache.getOverlappingPairArray()[i], this);
+    };
+    clean(*world.getPairCache());
+    for (int i = 0; i < world.getNumCollisionObjects(); ++i)
+        if (auto* ghost = dynamic_cast<btPairCachingGhostObject*>(world.getCollisionObjectArray()[i]))
+            clean(*ghost->getOverlappingPairCache());
+    s.touches.forget();
+    s.stats = {};
+    s.objects.forget();
+    // Without speculative contacts a scene forgets where bodies went.
+    const Settings settings = s.scene.settings();
+    Settings plain = settings;
+    plain.speculative = false;
+    s.scene.set_settings(plain);
+    for (int i = 0; i < 2; ++i) s.scene.find_contacts(std::span<const Pair>()); // the first has lost contacts
+    s.scene.set_settings(settings);
 }
 
 void CollisionDispatcher::on_fault(std::function<void(const Fault&)> callback) {

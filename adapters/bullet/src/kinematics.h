@@ -25,6 +25,7 @@ public:
         if (dispatch % 64 == 0)
             std::erase_if(motions_, [&](const auto& m) { return m.second.dispatch + 2 < dispatch; });
     }
+    void forget() { motions_.clear(); }
     /// Empty where the object is not kinematic, does not move, or was put elsewhere: it went farther than its own size,
     /// unlike in its motion before.
     std::optional<btTransform> next_of(const btCollisionObject& object);

@@ -290,6 +290,12 @@ void Objects::refresh_pinned(std::uint64_t dispatch) {
     for (const auto& [object, record] : pinned_) refresh(*object, *record, dispatch);
 }
 
+void Objects::forget() {
+    kinematics_.forget();
+    mended_ = {};
+    for (const auto& [object, record] : pinned_) record->seen = Object::never;
+}
+
 void Objects::pin(const btCollisionObject& object, std::shared_ptr<Object> record) {
     if (std::ranges::find(pinned_, &object, [](const auto& one) { return one.first; }) == pinned_.end())
         pinned_.emplace_back(&object, std::move(record));

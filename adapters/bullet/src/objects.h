@@ -110,6 +110,9 @@ public:
     /// Also those that no pair needs now: the scene has their poses, and so has a recording.
     void refresh_pinned(std::uint64_t dispatch);
 
+    /// Where objects were, and how they moved.
+    void forget();
+
     /// From now on refresh() also tells the scene where objects will be after so many seconds; 0: not.
     void look_ahead(btScalar seconds, std::uint64_t dispatch) {
         ahead_ = seconds;

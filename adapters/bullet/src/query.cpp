@@ -8,6 +8,7 @@
 
 #include <array>
 #include <optional>
+#include <utility>
 
 namespace raycontact::bullet {
 
@@ -24,7 +25,52 @@ struct Guest {
     BodyId body;
 };
 
+/// Of points that were there before; beside the flags of patches.cpp.
+constexpr int flag_stale = 1 << 17;
+
+/// What Bullet's algorithm has put into a manifold of its own; nothing where a callback has taken it.
+void copy_points(const btPersistentManifold& from, btPersistentManifold& to) {
+    const bool turned = from.getBody0() != to.getBody0();
+    for (int i = 0; i < from.getNumContacts(); ++i) {
+        btManifoldPoint p = from.getContactPoint(i);
+        if (turned) {
+            std::swap(p.m_localPointA, p.m_localPointB);
+            std::swap(p.m_positionWorldOnA, p.m_positionWorldOnB);
+            std::swap(p.m_partId0, p.m_partId1);
+            std::swap(p.m_index0, p.m_index1);
+            p.m_normalWorldOnB = -p.m_normalWorldOnB;
+        }
+        to.addManifoldPoint(p);
+    }
+}
+
 } // namespace
+
+// One old point stays until the new ones are there: a manifold that runs empty in between would be told as one that
+// ended.
+void QueryAlgorithm::processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
+                                      const btDispatcherInfo& info, btManifoldResult* result) {
+    const btCollisionObject &one = *a->getCollisionObject(), &two = *b->getCollisionObject();
+    if (!manifold_)
+        manifold_ = std::make_unique<btPersistentManifold>(
+            &one, &two, 0,
+            btMin(one.getCollisionShape()->getContactBreakingThreshold(gContactBreakingThreshold),
+                  two.getCollisionShape()->getContactBreakingThreshold(gContactBreakingThreshold)),
+            btMin(one.getContactProcessingThreshold(), two.getContactProcessingThreshold()));
+    btPersistentManifold& m = *manifold_;
+    while (m.getNumContacts() > 1) m.removeContactPoint(m.getNumContacts() - 1);
+    if (m.getNumContacts() > 0) m.getContactPoint(0).m_contactPointFlags |= flag_stale;
+    result->setPersistentManifold(&m);
+    try {
+        queries_.run(*a, *b, info, *result);
+    } catch (...) { // Bullet's queries then forget the algorithm: its destructor is not called
+        result->setPersistentManifold(nullptr);
+        manifold_.reset();
+        throw;
+    }
+    for (int i = m.getNumContacts() - 1; i >= 0; --i)
+        if (m.getContactPoint(i).m_contactPointFlags & flag_stale) m.removeContactPoint(i);
+}
 
 std::vector<Queries::Placed> Queries::leaves_of(const btCollisionObjectWrapper& wrap) {
     std::vector<Placed> leaves;
@@ -145,7 +191,11 @@ void Queries::run_bullet(const Placed& a, const Placed& b, const btCollisionObje
     result.setBody1Wrap(&wrap_b);
     result.setShapeIdentifiersA(-1, a.index);
     result.setShapeIdentifiersB(-1, b.index);
+    btPersistentManifold* const own = result.getPersistentManifold();
     algorithm->processCollision(&wrap_a, &wrap_b, info, &result);
+    btManifoldArray found;
+    algorithm->getAllContactManifolds(found);
+    for (int i = 0; i < found.size(); ++i) copy_points(*found[i], *own);
 }
 
 } // namespace raycontact::bullet

@@ -9,6 +9,7 @@
 #include <BulletCollision/CollisionDispatch/btCollisionObjectWrapper.h>
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
 
+#include <memory>
 #include <vector>
 
 namespace raycontact::bullet {
@@ -51,43 +52,29 @@ private:
     btCollisionDispatcher& dispatcher_;
 };
 
-/// Owns a manifold: Bullet reads from a result's manifold which body comes first.
+/// Owns a manifold: Bullet reads from a result's manifold which body comes first. It is none of the dispatcher's, so no
+/// solver sees it: what a character asks about is in the world's pairs, too.
 class QueryAlgorithm final : public btCollisionAlgorithm {
 public:
     QueryAlgorithm(const btCollisionAlgorithmConstructionInfo& info, Queries& queries)
         : btCollisionAlgorithm(info), queries_(queries) {}
-    ~QueryAlgorithm() override { drop_manifold(); }
     QueryAlgorithm(const QueryAlgorithm&) = delete;
     QueryAlgorithm& operator=(const QueryAlgorithm&) = delete;
 
+    /// Again and again for a pair of a ghost's own cache.
     void processCollision(const btCollisionObjectWrapper* a, const btCollisionObjectWrapper* b,
-                          const btDispatcherInfo& info, btManifoldResult* result) override {
-        if (!manifold_) manifold_ = m_dispatcher->getNewManifold(a->getCollisionObject(), b->getCollisionObject());
-        result->setPersistentManifold(manifold_);
-        try {
-            queries_.run(*a, *b, info, *result);
-        } catch (...) { // Bullet's queries then forget the algorithm: its destructor is not called
-            result->setPersistentManifold(nullptr);
-            drop_manifold();
-            throw;
-        }
-    }
+                          const btDispatcherInfo& info, btManifoldResult* result) override;
     btScalar calculateTimeOfImpact(btCollisionObject*, btCollisionObject*, const btDispatcherInfo&,
                                    btManifoldResult*) override {
         return btScalar(1);
     }
     void getAllContactManifolds(btManifoldArray& out) override {
-        if (manifold_) out.push_back(manifold_);
+        if (manifold_) out.push_back(manifold_.get());
     }
 
 private:
-    void drop_manifold() {
-        if (manifold_) m_dispatcher->releaseManifold(manifold_);
-        manifold_ = nullptr;
-    }
-
     Queries& queries_;
-    btPersistentManifold* manifold_ = nullptr; ///< null: it has not run
+    std::unique_ptr<btPersistentManifold> manifold_; ///< null: it has not run
 };
 
 } // namespace raycontact::bullet

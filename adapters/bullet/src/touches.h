@@ -17,6 +17,8 @@ public:
     /// First in a dispatch, and last.
     void begin();
     void done() { in_dispatch_ = false; }
+    /// Once all pairs are gone: nothing is told of them.
+    void forget() { *this = {}; }
     /// Of a pair whose contacts were found in this dispatch. seconds: until the next one.
     void update(PairState& pair, btScalar seconds);
     /// Its contacts are gone, or it is.

@@ -149,6 +149,14 @@ public:
     /// Converts the meshes of an object again at the next dispatch. Call it after writing to its mesh interface.
     void refresh(const btCollisionObject& object);
 
+    /// What is kept of earlier dispatches is forgotten, so that the next one is like a first one: for a saved state of
+    /// the world that is loaded, poses and velocities put back. All pairs of the world and of its ghosts lose their
+    /// manifolds, with the impulses in them, those of Bullet's own algorithms too; nothing is told of them as ended.
+    /// begun(), ended(), stats() and scene() are empty, no kinematic object is in motion. What stays: meshes that were
+    /// made, objects given to add_body() with their ids, faults that were told, a recording. docs/bullet.md says what
+    /// else a run needs to repeat to the bit. Not in a dispatch or callback. Throws as Scene::find_contacts().
+    void forget(btCollisionWorld& world);
+
     /// Called at the end of the dispatch or query that found a fault, once for each as long as it lasts and the object
     /// stays in its world: added again it is told of again, and so is another object that has its address.
     /// (btAxisSweep3 gives numbers of proxies again, and objects that are only asked about have none: call
