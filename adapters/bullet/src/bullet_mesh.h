@@ -18,8 +18,8 @@
 
 namespace raycontact::bullet {
 
-/// A shape in Bullet's numbers: the vertices that Bullet's own algorithms and balls see, and its box in the world. Body
-/// frame, metres.
+/// A shape in Bullet's numbers: the vertices that Bullet's own algorithms see, and its box in the world. Body frame,
+/// metres.
 class BulletMesh {
 public:
     explicit BulletMesh(std::shared_ptr<const Shape> shape);

@@ -47,6 +47,13 @@ Nearest nearest(const Facet& facet, const Vec3& p) {
     return at(p - dot(ap, facet.normal) * facet.normal, 7);
 }
 
+double least_away(const Facet& facet, const Vec3& a, const Vec3& b) {
+    const Vec3 middle = 0.5 * (facet.low + facet.high), along = b - a;
+    const double square = length2(along);
+    const double at = square > 0 ? std::clamp(dot(middle - a, along) / square, 0.0, 1.0) : 0;
+    return length(middle - (a + at * along)) - length(facet.high - middle);
+}
+
 void Surface::near(const Vec3& low, const Vec3& high, std::vector<Facet>& out) const {
     if (shape_) {
         static thread_local std::vector<std::uint32_t> triangles;

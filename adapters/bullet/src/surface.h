@@ -27,6 +27,8 @@ struct Nearest {
     unsigned on = 7;  ///< the corners that span what it lies on: bits 0 to 2
 };
 Nearest nearest(const Facet& facet, const Vec3& p);
+/// Metres that a facet is at least away from the segment between two points.
+double least_away(const Facet& facet, const Vec3& a, const Vec3& b);
 
 /// What a ball or capsule meets: a mesh, or a height field as it is now, of which no mesh is made. In double.
 class Surface {

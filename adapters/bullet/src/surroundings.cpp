@@ -33,13 +33,6 @@ bool in_box(const Facet& f, const Vec3& p, double around) {
            && p.z >= f.low.z - around && p.z <= f.high.z + around;
 }
 
-bool boxes_meet(const Facet& f, const Vec3& a, const Vec3& b, double around) {
-    const auto meet = [&](double from, double to, double low, double high) {
-        return std::min(from, to) - around <= high && std::max(from, to) + around >= low;
-    };
-    return meet(a.x, b.x, f.low.x, f.high.x) && meet(a.y, b.y, f.low.y, f.high.y) && meet(a.z, b.z, f.low.z, f.high.z);
-}
-
 /// Of a facet as seen from a point of it: 2 pi within, pi on an edge.
 double angle_at(const Facet& f, unsigned on) {
     if (on == 7) return 2 * std::numbers::pi;
@@ -49,11 +42,15 @@ double angle_at(const Facet& f, unsigned on) {
     return std::atan2(length(cross(one, two)), dot(one, two));
 }
 
+/// Of two at one place the face speaks: an edge may yet be a step.
 void add(std::vector<Spot>& spots, const Spot& spot, double limit) {
-    const bool known = std::ranges::any_of(spots, [&](const Spot& s) {
+    const auto known = std::ranges::find_if(spots, [&](const Spot& s) {
         return length2(s.point - spot.point) < one_place * one_place * limit * limit && s.away * spot.away > 0;
     });
-    if (!known) spots.push_back(spot);
+    if (known == spots.end())
+        spots.push_back(spot);
+    else if (spot.flat && !known->flat)
+        *known = spot;
 }
 
 } // namespace
@@ -61,6 +58,7 @@ void add(std::vector<Spot>& spots, const Spot& spot, double limit) {
 Surroundings::Surroundings(const Round& round, const btTransform& pose, const std::optional<btTransform>& next,
                            std::span<const Obstacle> obstacles, double reach)
     : round_(round) {
+    for (const Obstacle& o : obstacles) margin_ = std::max(margin_, o.margin);
     for (const Obstacle& o : obstacles) {
         Site& site = sites_.emplace_back();
         site.obstacle = &o;
@@ -80,7 +78,7 @@ Surroundings::Surroundings(const Round& round, const btTransform& pose, const st
             }
         }
         // What bends a way turns it out of its box by no more than half its length.
-        const double around = round.radius + reach + longest / 2;
+        const double around = round.radius + reach + margin_ + longest / 2;
         const Vec3 more{around, around, around};
         o.surface.near(low - more, high + more, site.facets);
     }
@@ -289,7 +287,7 @@ void Surroundings::of_side(double part, double limit, std::vector<std::vector<Sp
         const Vec3 a = axis(k, 0, part), along = axis(k, 1, part) - a;
         const double length2_along = length2(along);
         for (const Facet& f : sites_[k].facets) {
-            if (!boxes_meet(f, a, a + along, limit)) continue;
+            if (least_away(f, a, a + along) >= limit) continue;
             double least = std::min(nearest(f, a).away2, nearest(f, a + along).away2);
             const double slope = dot(f.normal, along),
                          through = slope != 0 ? dot(f.normal, f.corner[0] - a) / slope : 2;
@@ -315,18 +313,22 @@ void Surroundings::of_side(double part, double limit, std::vector<std::vector<Sp
         }
     }
     std::ranges::stable_sort(candidates, {}, [](const Candidate& c) { return c.entry.away2; });
+    std::ranges::stable_sort(entries, {}, &Entry::away2);
     for (const auto& [e, at] : candidates) {
         const double near = beside(e.site), nearer_than = e.away2 - rounding * limit * limit;
-        const bool least = std::ranges::none_of(entries, [&](const Entry& other) {
-            if (other.away2 >= nearer_than) return false;
-            const Vec3 p = seen_from(other.site, e.site, e.nearest.point, at, part);
-            return in_box(*other.facet, p, near) && nearest(*other.facet, p).away2 <= near * near
-                   && nearest(*other.facet, axis(other.site, at, part)).away2 < nearer_than;
-        });
+        bool least = true;
+        // The facet that is nearer there is mostly but little nearer.
+        for (auto other = std::ranges::lower_bound(entries, nearer_than, {}, &Entry::away2);
+             least && other-- != entries.begin();) {
+            const Vec3 p = seen_from(other->site, e.site, e.nearest.point, at, part);
+            least = !in_box(*other->facet, p, near) || nearest(*other->facet, p).away2 > near * near
+                    || nearest(*other->facet, axis(other->site, at, part)).away2 >= nearer_than;
+        }
         if (!least) continue;
-        Spot spot{.obstacle = e.site, .part = 2, .at = at, .point = e.nearest.point};
+        Spot spot{.obstacle = e.site, .part = 2, .at = at, .point = e.nearest.point, .away = std::sqrt(e.away2)};
+        if (is_plateau(spot, part)) continue;
         finish(sites_[e.site], *e.facet, e.nearest.on, axis(e.site, at, part), spot);
-        if (spot.away > 0 && !is_plateau(spot, part)) add(out[e.site], spot, limit);
+        if (spot.away > 0) add(out[e.site], spot, limit);
     }
 }
 
@@ -363,23 +365,26 @@ void Surroundings::of_axis(std::size_t k, double part, std::vector<Spot>& first,
     }
 }
 
+// Decided with all that are little farther: an edge may be a step beside a face.
 void Surroundings::spots(double part, double limit, std::vector<Spot>& out) const {
     out.clear();
+    const double farther = limit + margin_;
     std::array<std::vector<std::vector<Spot>>, 3> found; // by part and obstacle
     for (auto& of_part : found) of_part.resize(sites_.size());
-    of_end(0, part, limit, found[0]);
+    of_end(0, part, farther, found[0]);
     if (round_.balls > 1) {
-        of_end(1, part, limit, found[1]);
-        of_side(part, limit, found[2]);
+        of_end(1, part, farther, found[1]);
+        of_side(part, farther, found[2]);
         for (std::size_t k = 0; k < sites_.size(); ++k) of_axis(k, part, found[0][k], found[1][k], found[2][k]);
     }
+    std::vector<Spot> all;
     for (std::size_t k = 0; k < sites_.size(); ++k)
         for (auto& of_part : found) {
             std::ranges::stable_sort(of_part[k], {}, &Spot::triangle); // numbers stay while distances change
-            out.insert(out.end(), of_part[k].begin(), of_part[k].end());
+            all.insert(all.end(), of_part[k].begin(), of_part[k].end());
         }
-    const std::vector<Spot> all = out;
-    std::erase_if(out, [&](const Spot& s) { return !s.flat && s.away > 0 && is_step(s, all, part); });
+    for (const Spot& s : all)
+        if (s.away < limit && (s.flat || s.away <= 0 || !is_step(s, all, part))) out.push_back(s);
 }
 
 } // namespace raycontact::bullet

@@ -73,6 +73,7 @@ private:
 
     Round round_;
     std::vector<Site> sites_;
+    double margin_ = 0; ///< of all obstacles the widest
 };
 
 } // namespace raycontact::bullet

@@ -45,18 +45,10 @@ public:
 
     void find() {
         const int balls = s_.round().balls;
-        const bool one_sided = site_.obstacle->surface.has_inside();
+        const double longest = std::max(length(site_.by[0]), length(site_.by[1]));
         for (const Facet& f : site_.facets) {
-            bool passes = false, comes_near = false;
-            for (int e = 0; e < balls; ++e) {
-                passes = passes || !one_sided || dot(f.normal, site_.by[e]) < 0; // else it leads out
-                const double height = dot(f.normal, site_.from[e] - f.corner[0]),
-                             then = height + dot(f.normal, site_.by[e]);
-                comes_near =
-                    comes_near || std::min(std::fabs(height), std::fabs(then)) <= radius_ || height * then <= 0;
-            }
-            if (balls > 1) comes_near = true;
-            if (!passes || !comes_near) continue;
+            if (least_away(f, site_.from[0], site_.from[1]) > radius_ + longest) continue;
+            if (site_.obstacle->surface.has_inside() && !looks_back(f)) continue;
             for (int e = 0; e < balls; ++e) {
                 face(f, e);
                 for (std::size_t k = 0; k < 3; ++k) {
@@ -72,6 +64,10 @@ public:
     }
 
 private:
+    /// Against the way: else all that a closed mesh has there to be met is told by other facets.
+    bool looks_back(const Facet& f) const {
+        return std::ranges::any_of(site_.by, [&](const Vec3& by) { return dot(f.normal, by) < -1e-5 * length(by); });
+    }
     void add(double part, double at, const Vec3& point, bool of_face) {
         const Vec3 centre = (1 - at) * (site_.from[0] + part * site_.by[0]) + at * (site_.from[1] + part * site_.by[1]);
         if (leads_into(s_, obstacle_, at, (1 / radius_) * (centre - point)))
@@ -184,8 +180,8 @@ std::vector<Spot> first_touched(const Surroundings& s, double radius, double& pa
 bool sweep(Surroundings& s, std::vector<FirstTouch>& touched) {
     touched.clear();
     // What touches is as if it were on the surface: else it would be past what joins that at a small angle.
-    std::vector<Spot> spots;
     double radius = s.round().radius;
+    std::vector<Spot> spots;
     s.spots(0, radius, spots);
     for (const Spot& spot : spots)
         if (spot.away > 0) radius = std::min(radius, std::max(spot.away, s.round().radius / 2));

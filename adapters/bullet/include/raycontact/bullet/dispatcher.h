@@ -60,7 +60,7 @@ struct DispatcherStats {
     /// Pairs of a mesh and a plane; without speculative contacts also of a mesh and a box's face that it lies wholly
     /// over.
     std::uint64_t plane_pairs = 0;
-    std::uint64_t round_pairs = 0; ///< pairs of a mesh and a ball or capsule
+    std::uint64_t round_pairs = 0; ///< pairs of a mesh or height field and a ball or capsule
     std::uint64_t other_pairs = 0; ///< left to Bullet's own algorithms
     /// Pairs of an open mesh and one of Bullet's convex shapes, that takes each face as two-sided
     /// (ConvexShapes::by_mesh); balls and capsules are in round_pairs.
@@ -104,15 +104,17 @@ struct PointKey {
 
 /// Use it in place of btCollisionDispatcher. All pairs of triangle meshes (MeshShape, btGImpactMeshShape,
 /// btBvhTriangleMeshShape, btScaledBvhTriangleMeshShape, also inside compounds) go to RayContact in one batch a step;
-/// meshes against planes, height fields and convex shapes are handled here as well, Bullet handles the rest. A near
+/// meshes against planes, height fields and convex shapes are handled here as well, and so are balls and capsules
+/// against height fields; Bullet handles the rest. A near
 /// callback of your own is asked about every pair; the batch has those for which it calls defaultNearCallback, or
 /// findAlgorithm and processCollision. Call refresh() for a mesh or hull that was changed in place. Not thread-safe,
 /// like Bullet's.
 ///
 /// Unless Settings::speculative is false, meshes have speculative contacts, too (docs/internals/speculative.md): points
 /// that do not touch yet. Their distance is positive, so Bullet's solver stops bodies at the surface. Of a point that
-/// will bounce, getDistance() is no gap once the callbacks were called: it is far below 0, which makes the solver give
-/// back what restitution says. The point's positions stay true.
+/// will bounce, and of a soft one (setContactStiffnessAndDamping) in an attached world, getDistance() is no gap once
+/// the callbacks were called: the solver is told what makes it give back what restitution says, or carry by the spring.
+/// The point's positions stay true.
 class RAYCONTACT_API CollisionDispatcher : public btCollisionDispatcher {
 public:
     /// Throws as Scene::Scene(), and InputError when keep_steps is out of range. Direction `weighted` gives Bullet the
@@ -127,6 +129,8 @@ public:
     /// for a transform that is not finite. Call it again for another world, before that one steps.
     void attach(btCollisionWorld& world);
 
+    /// A step, if the pairs are those of the attached world; without one, unless they are a ghost's own. Other pairs
+    /// are a query, as contactTest is: their algorithms have manifolds, and nothing else here or in the solver knows.
     /// No pose and no mesh throws: see DispatcherStats::made_rigid, scaled and left_out. Throws as
     /// Scene::find_contacts(), and as Recorder::record() while it records.
     void dispatchAllCollisionPairs(btOverlappingPairCache* cache, const btDispatcherInfo& info,
