@@ -24,13 +24,9 @@ class BulletMesh {
 public:
     explicit BulletMesh(std::shared_ptr<const Shape> shape);
 
-    const std::array<std::uint32_t, 3>& triangle(std::uint32_t t) const { return triangles_[t]; }
     /// k: any; they go round.
     const btVector3& corner(std::uint32_t t, int k) const {
         return vertices_[triangles_[t][static_cast<std::size_t>(k % 3)]];
-    }
-    btVector3 face_normal(std::uint32_t t) const {
-        return (corner(t, 1) - corner(t, 0)).cross(corner(t, 2) - corner(t, 0)).normalized();
     }
     /// Triangles whose own boxes overlap [low, high], ascending.
     std::vector<std::uint32_t> overlapping(const btVector3& low, const btVector3& high) const;
