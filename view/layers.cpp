@@ -59,7 +59,8 @@ LayerStep read_layer(const Scene& scene, std::uint32_t step) {
         auto [segment, body] = start(contact, contact.point());
         segment.normal = triple(contact.normal);
         // A vertex's ray goes inward; the others' goes along the normal, the way out.
-        const bool inward = contact.feature.kind == FeatureKind::vertex;
+        const bool inward =
+            contact.feature.kind == FeatureKind::vertex || contact.feature.kind == FeatureKind::vertex_face;
         segment.direction = inward ? outward(body, contact.feature.source_index()) : segment.normal;
         if (inward || contact.feature.source == Side::a)
             for (double& part : segment.direction) part = -part;

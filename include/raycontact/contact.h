@@ -18,7 +18,15 @@ enum class FeatureKind : std::uint8_t {
     vertex = 0, ///< a vertex inside the other mesh: its ray met the closest face from inside (Hermann et al. 2008)
     edges = 1,  ///< an edge of either body: they pass each other where the surfaces cross (docs/internals/edges.md)
     inside = 2, ///< the whole body lies inside the other mesh; its deepest vertex stands for it
+    /// A vertex and a face that it is near or comes to, beside another contact of that vertex. Nothing touches there
+    /// yet.
+    vertex_face = 3,
 };
+
+/// Whether a feature is named by what it is of either body, not of the source alone.
+constexpr bool names_both(FeatureKind kind) noexcept {
+    return kind == FeatureKind::edges || kind == FeatureKind::vertex_face;
+}
 
 /// One body of a pair.
 enum class Side : std::uint8_t { a = 0, b = 1 };
@@ -42,9 +50,18 @@ struct ContactFeature {
     /// Names the same physical contact from step to step, unique in its pair: it does not change when the ray meets
     /// another triangle. Contacts of a pair are sorted by it.
     std::uint64_t key() const noexcept {
-        return kind == FeatureKind::vertex  ? std::uint64_t(source) << 62 | source_index()
-               : kind == FeatureKind::edges ? std::uint64_t{2} << 62 | std::uint64_t{index_a} << 31 | index_b
-                                            : std::uint64_t{3} << 62 | std::uint64_t(source) << 32 | source_index();
+        const std::uint64_t side = std::uint64_t(source), own = source_index();
+        switch (kind) {
+        case FeatureKind::vertex:
+            return side << 62 | own;
+        case FeatureKind::edges:
+            return std::uint64_t{2} << 62 | std::uint64_t{index_a} << 31 | index_b;
+        case FeatureKind::inside:
+            return std::uint64_t{3} << 62 | side << 32 | own;
+        case FeatureKind::vertex_face:
+            break;
+        }
+        return std::uint64_t{7} << 61 | side << 60 | own << 30 | other_index(); // a mesh has fewer than 2^30 of either
     }
     friend bool operator==(const ContactFeature&, const ContactFeature&) = default;
 };

@@ -2,10 +2,11 @@
 #include "edges/edge_stage.h"
 
 #include "contacts/write_contact.h"
-#include "speculative/speculative_pair.h"
+#include "speculative/edge_search.h"
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <tuple>
 
@@ -159,17 +160,23 @@ void EdgeStage::find(Workspace& work, Block& block, const Question& question, co
         if (asked.apart != nullptr) *asked.apart = apart && near[0].empty() && near[1].empty();
     }
     const std::span<const FeatureContact> speculative = question.speculative.of(asked.pair);
-    const bool told = in_contact || !speculative.empty();
-    if (settings.is_speculative() && asked.edges)
-        find_speculative_edges({a, b, speculative_margin(settings, a, b)}, told, near, work.found);
     // A vertex that edges found inside is no longer near.
-    const std::size_t touching = work.found.size();
-    std::ranges::copy_if(speculative, std::back_inserter(work.found), [&](const FeatureContact& ahead) {
-        return std::none_of(
-            work.found.begin(), work.found.begin() + std::ptrdiff_t(touching), [&](const FeatureContact& c) {
-                return c.kind == FeatureKind::vertex && c.source == ahead.source && c.index == ahead.index;
-            });
-    });
+    const auto is_inside = [&](const FeatureContact& ahead) {
+        return std::ranges::any_of(work.found, [&](const FeatureContact& c) {
+            return c.kind == FeatureKind::vertex && c.source == ahead.source && c.index == ahead.index;
+        });
+    };
+    work.ahead.clear();
+    std::ranges::copy_if(speculative, std::back_inserter(work.ahead), std::not_fn(is_inside));
+    if (settings.is_speculative() && asked.edges) {
+        const SpeculativePair speculative_pair(a, b, speculative_margin(settings, a, b));
+        const std::size_t touching = work.found.size();
+        find_speculative_edges(speculative_pair, near[0], in_contact ? least_hidden * smaller_size(a, b) : -1,
+                               work.found);
+        for (FeatureContact& found : std::span(work.found).first(touching))
+            if (found.kind == FeatureKind::edges) change_least(speculative_pair, found);
+    }
+    work.found.insert(work.found.end(), work.ahead.begin(), work.ahead.end());
     const auto first = static_cast<std::ptrdiff_t>(block.contacts.size());
     for (const FeatureContact& found : work.found) {
         const bool from_a = found.source == Side::a;

@@ -6,6 +6,7 @@
 #include "pairs/by_pair.h"
 #include "pairs/near_edges.h"
 #include "pairs/update.h"
+#include "speculative/edge_search.h"
 #include "speculative/speculative_vertices.h"
 
 #include <span>
@@ -30,7 +31,7 @@ private:
     /// What some of the blocks are worked on in, one after the other.
     struct Workspace {
         PairEdges edges;
-        std::vector<FeatureContact> found;
+        std::vector<FeatureContact> found, ahead; ///< of one pair; those of vertices that do not touch yet
     };
     /// Pairs that one thread takes at once, and what it finds.
     struct Block {

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "edges/regions.h"
 
+#include "shape/around.h"
+
 #include <algorithm>
 
 namespace raycontact {
-
-namespace {
-
-constexpr int most_triangles_around = 256;
-
-} // namespace
 
 void Regions::find(const PairMeshes& pair, const Loops& loops, const EdgePieces& pieces,
                    std::span<const TouchingVertex> touching) {
@@ -80,22 +76,10 @@ void Regions::join_vertices(const PairMeshes& pair, const EdgePieces& pieces) {
             if (!std::ranges::binary_search(pieces.crossed(), std::array{v.vertex, vertex_of_side(side, other)}))
                 sets_.join(node, node_of(v));
         };
-        // Around the vertex; where a border ends that, the other way round, too.
-        const std::uint32_t begin = shape.vertex_triangle[own];
-        std::uint32_t t = begin;
-        for (const std::size_t way : {0u, 2u}) {
-            for (int count = 0; count < most_triangles_around && t != NONE; ++count) {
-                const auto& corners = shape.mesh.triangles[t];
-                const std::size_t c = corners[0] == own ? 0 : corners[1] == own ? 1 : 2;
-                join(corners[(c + (way == 0 ? 2 : 1)) % 3]); // the other corner is the next triangle's, or a border's
-                const std::uint32_t next = shape.neighbours[t][(c + way) % 3];
-                if (next == NONE) join(corners[(c + (way == 0 ? 1 : 2)) % 3]);
-                t = next;
-                if (t == begin) break;
-            }
-            if (t != NONE) break;
-            t = begin;
-        }
+        any_neighbour(shape, own, [&](std::uint32_t other) {
+            join(other);
+            return false;
+        });
     }
     for (const TouchingVertex& v : touching_) node_at_[v.side()][v.number()] = NONE;
 }

@@ -300,9 +300,8 @@ void CertifiedRays::find_edges(const Update& update, const ByPair<kernels::Local
             slack.all = !in_contact || !asks_edges(a, b);
             edges_.release(state);
             if (!asks_edges(a, b) || (in_contact && !hides_more(a, b, least_hidden))) continue;
-            const bool come_near = !in_contact || hides_more(a, b, least_hidden_beside);
-            NearLists::Search& search = searches_.emplace_back(
-                search_of(due, before, due.moves && come_near, come_near ? double(slack.margin) : 0));
+            NearLists::Search& search =
+                searches_.emplace_back(search_of(due, before, due.moves, double(slack.margin)));
             search.least = in_contact ? static_cast<float>(hidden_length(a, b)) : 0;
         }
     edges_.find(update, searches_, table_, batch);

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "speculative/speculative_vertices.h"
 
-#include "speculative/speculative_pair.h"
-
 #include <algorithm>
 #include <numeric>
 
@@ -20,7 +18,7 @@ void SpeculativeVertices::run(const Update& update, const ByPair<kernels::LocalC
     if (blocks_.size() < block_count) blocks_.resize(block_count);
     ends_.assign(update.pairs.size() + 1, 0);
     update.executor.each(block_count, 1, [&](std::uint32_t k) {
-        auto& [found, touches] = blocks_[k];
+        auto& [found, touches, search] = blocks_[k];
         found.clear();
         const std::size_t first = k * pairs_in_block;
         for (const AskedPair& one : asked.subspan(first, std::min(pairs_in_block, asked.size() - first))) {
@@ -28,13 +26,12 @@ void SpeculativeVertices::run(const Update& update, const ByPair<kernels::LocalC
             const PlacedBody &a = update.bodies[update.pairs[one.pair].first],
                              &b = update.bodies[update.pairs[one.pair].second];
             for (std::size_t side = 0; side < 2; ++side) {
-                touches[side].clear();
-                for (const kernels::LocalContact& c : touching.of(2 * one.pair + side))
-                    touches[side].push_back(c.vertex);
-                std::sort(touches[side].begin(), touches[side].end());
+                const auto local = touching.of(2 * one.pair + side);
+                touches[side].assign(local.begin(), local.end());
+                std::ranges::sort(touches[side], {}, &kernels::LocalContact::vertex);
             }
-            find_speculative_vertices({a, b, speculative_margin(update.settings, a, b)}, {one.near[0], one.near[1]},
-                                      {touches[0], touches[1]}, found);
+            search.find({a, b, speculative_margin(update.settings, a, b)}, {one.near[0], one.near[1]},
+                        {touches[0], touches[1]}, found);
             ends_[one.pair + 1] = static_cast<std::uint32_t>(found.size() - before);
         }
     });

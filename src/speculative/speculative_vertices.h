@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include "edges/pair_meshes.h"
 #include "pairs/by_pair.h"
 #include "pairs/near_edges.h"
 #include "pairs/update.h"
+#include "speculative/vertex_search.h"
 
 #include <array>
 #include <span>
@@ -28,7 +28,8 @@ private:
     /// Some pairs.
     struct Block {
         std::vector<FeatureContact> found;
-        std::array<std::vector<std::uint32_t>, 2> touching; ///< of one pair: the vertices of a, of b, sorted
+        std::array<std::vector<kernels::LocalContact>, 2> touching; ///< of one pair, by rising vertex
+        VertexSearch search;
     };
 
     std::vector<Block> blocks_;

@@ -307,7 +307,7 @@ void CollisionDispatcher::dispatchAllCollisionPairs(btOverlappingPairCache* cach
         if (adds_are_told(*pair.object0, *pair.object1)) pair.name_places();
         pair.patches.update(pair.candidates, pair.record0->pose, pair.record1->pose, s.manifolds, s.stats);
         s.touches.update(pair, info.m_timeStep);
-        if (s.scene.settings().is_speculative()) pair.turn_round_what_bounces(info.m_timeStep); // after the callbacks
+        if (s.scene.settings().is_speculative()) pair.tell_solver(info.m_timeStep); // after the callbacks
     }
     if (const btContactSolverInfo* solver = s.solver_of(cache))
         for (int i = 0; i < getNumManifolds(); ++i) keep_soft(*getManifoldByIndexInternal(i), *solver, info.m_timeStep);

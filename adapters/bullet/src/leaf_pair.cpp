@@ -163,7 +163,7 @@ Candidate candidate_of(const Contact& contact, int child0, int child1, bool swap
              swapped ? 1 - source : source,
              static_cast<int>(contact.feature.source_index()),
              kind,
-             static_cast<int>(kind == FeatureKind::edges ? contact.feature.index_b : 0)};
+             static_cast<int>(names_both(kind) ? contact.feature.other_index() : 0)};
     c.triangle = static_cast<int>(contact.feature.other_index());
     c.on0 = to_bullet(swapped ? contact.point_b : contact.point_a);
     c.on1 = to_bullet(swapped ? contact.point_a : contact.point_b);

@@ -230,7 +230,7 @@ void Objects::place_leaf(const btCollisionObject& object, Object& record, Leaf& 
     find_box(*leaf.converted.shape, leaf.pose, leaf.low, leaf.high);
 }
 
-// As Bullet will move it if nothing is in its way. The scene itself goes on with the motion of what Bullet gives no
+// As Bullet will move it if nothing new is in its way. The scene itself goes on with the motion of what Bullet gives no
 // velocity, and of one whose speed is beyond all bounds.
 void Objects::expect(const btCollisionObject& object, Object& record) {
     const btRigidBody* body = btRigidBody::upcast(&object);
@@ -243,8 +243,13 @@ void Objects::expect(const btCollisionObject& object, Object& record) {
     } else if (body->isStaticObject()) {
         return;
     } else {
-        const btVector3 velocity =
-            body->getLinearVelocity() + ahead_ * body->getInvMass() * body->getLinearFactor() * body->getTotalForce();
+        const btVector3 own = body->getLinearVelocity(),
+                        gain = ahead_ * body->getInvMass() * body->getLinearFactor() * body->getTotalForce();
+        // What held a body up in the last step holds it up in this one.
+        const bool is_held =
+            record.unhindered && (own - *record.unhindered).length2() > btScalar(0.25) * gain.length2();
+        record.unhindered = own + gain;
+        const btVector3 velocity = is_held ? own : own + gain;
         btTransformUtil::integrateTransform(record.pose, velocity, body->getAngularVelocity(), ahead_, then);
     }
     for (Leaf& leaf : record.leaves) {

@@ -13,6 +13,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -49,6 +50,7 @@ struct Object {
     std::uint64_t seen = 0;                        ///< dispatch in which poses were last handed over, or `never`
     bool stale = false;                            ///< refresh() was called
     std::string fault;                             ///< why all of it is left out: its transform; empty: it is not
+    std::optional<btVector3> unhindered; ///< the velocity that its forces alone would give it by the next dispatch
 
     static constexpr std::uint64_t never = ~std::uint64_t{0};
 

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <inner_edges.h>
 #include <pair.h>
 #include <told.h>
 
@@ -102,6 +103,13 @@ void PairState::run_child(const LeafPair& pair, const btDispatcherInfo& info) {
     result.setShapeIdentifiersA(-1, is_child0 ? pair.child0 : -1);
     result.setShapeIdentifiersB(-1, is_child1 ? pair.child1 : -1);
     found->algorithm->processCollision(&wrap0, &wrap1, info, &result);
+    if (!pair.is_two_sided()) return;
+    static thread_local btManifoldArray manifolds;
+    manifolds.resizeNoInitialize(0);
+    found->algorithm->getAllContactManifolds(manifolds);
+    for (int i = 0; i < manifolds.size(); ++i)
+        leave_inner_edges(*manifolds[i], pair.mesh(),
+                          (manifolds[i]->getBody0() == object0) == (&pair.mesh() == &pair.leaf0));
 }
 
 void PairState::all_manifolds(btManifoldArray& out) const {
@@ -111,6 +119,13 @@ void PairState::all_manifolds(btManifoldArray& out) const {
 
 void PairState::name_places() {
     for (Candidate& c : candidates) bullet::name_places(c, leaf0(c.key), leaf1(c.key));
+}
+
+void PairState::tell_solver(btScalar seconds) {
+    turn_round_what_bounces(seconds);
+    for (btPersistentManifold* manifold : patches.manifolds())
+        for (int i = 0; i < manifold->getNumContacts(); ++i)
+            straighten(manifold->getContactPoint(i), *object0, *object1, seconds);
 }
 
 // What is turned round above the surface gives the energy of that height away: it rises as high as from the surface.

@@ -65,8 +65,8 @@ public:
     }
     /// For gContactAddedCallback.
     void name_places();
-    /// After the callbacks: Bullet's solver is to give back what restitution says of speculative contacts.
-    void turn_round_what_bounces(btScalar seconds);
+    /// After the callbacks: what Bullet's solver is told of speculative contacts, so that bodies bounce and roll.
+    void tell_solver(btScalar seconds);
     /// No contacts from now on, until the next update.
     void clear();
 
@@ -78,6 +78,7 @@ public:
     Touch touch; ///< as last seen; without objects: they do not touch
 
 private:
+    void turn_round_what_bounces(btScalar seconds);
     const Leaf& leaf0(const PointKey& key) const { return record0->leaves[static_cast<std::size_t>(key.child0)]; }
     const Leaf& leaf1(const PointKey& key) const { return record1->leaves[static_cast<std::size_t>(key.child1)]; }
 

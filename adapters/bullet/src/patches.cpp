@@ -284,7 +284,7 @@ PointKey CollisionDispatcher::key(const btManifoldPoint& p) {
     const bool on1 = (p.m_contactPointFlags & flag_vertex_on_1) != 0;
     const auto feature = static_cast<FeatureKind>((p.m_contactPointFlags & feature_mask) >> feature_shift);
     const int own = on1 ? p.m_index1 : p.m_index0, other = on1 ? p.m_index0 : p.m_index1;
-    return {p.m_partId0, p.m_partId1, on1 ? 1 : 0, own, feature, feature == FeatureKind::edges ? other : 0};
+    return {p.m_partId0, p.m_partId1, on1 ? 1 : 0, own, feature, names_both(feature) ? other : 0};
 }
 
 bool CollisionDispatcher::is_ours(const btManifoldPoint& p) {

@@ -3,6 +3,7 @@
 
 #include <BulletCollision/CollisionDispatch/btManifoldResult.h>
 #include <BulletDynamics/ConstraintSolver/btContactSolverInfo.h>
+#include <BulletDynamics/Dynamics/btRigidBody.h>
 
 namespace raycontact::bullet {
 
@@ -21,6 +22,15 @@ bool has_spring(const btManifoldPoint& point) {
 /// 1 / CFM of a spring.
 btScalar yields_by(const btManifoldPoint& point, btScalar seconds) {
     return btMax(seconds * point.m_combinedContactStiffness1 + point.m_combinedContactDamping1, btScalar(SIMD_EPSILON));
+}
+
+/// By how much the way of a body's point until the next step is off from the straight one along its velocity.
+btVector3 off_straight(const btCollisionObject& object, const btVector3& point, btScalar seconds) {
+    const btRigidBody* body = btRigidBody::upcast(&object);
+    const btScalar angle = body ? body->getAngularVelocity().length() * seconds : 0;
+    if (!(angle > 0)) return btVector3(0, 0, 0);
+    const btVector3 arm = point - body->getCenterOfMassPosition(), turn = seconds * body->getAngularVelocity();
+    return quatRotate(btQuaternion(turn / angle, angle), arm) - arm - turn.cross(arm);
 }
 
 } // namespace
@@ -47,6 +57,14 @@ void turn_round(btManifoldPoint& point, btScalar depth, btScalar seconds) {
     point.m_contactERP = 0;
     point.m_contactPointFlags |= flag_erp | flag_turned;
     point.m_distance1 = -depth;
+}
+
+void straighten(btManifoldPoint& point, const btCollisionObject& a, const btCollisionObject& b, btScalar seconds) {
+    if ((point.m_contactPointFlags & flag_turned) != 0) return;
+    const btVector3 off =
+        off_straight(a, point.m_positionWorldOnA, seconds) - off_straight(b, point.m_positionWorldOnB, seconds);
+    const btScalar away = off.dot(point.m_normalWorldOnB), gap = point.m_distance1;
+    point.m_distance1 = gap > 0 ? btMax(btScalar(0), gap + away) : gap + btMax(btScalar(0), away);
 }
 
 void keep_soft(btPersistentManifold& manifold, const btContactSolverInfo& solver, btScalar seconds) {

@@ -18,6 +18,10 @@ void combine_materials(btManifoldPoint& point, const btCollisionObject* a, const
 /// that no slop reaches. depth: such a one, metres. It is not undone.
 void turn_round(btManifoldPoint& point, btScalar depth, btScalar seconds);
 
+/// A point that is ahead, of bodies that turn: the solver takes its way for straight, along its velocity now; it is
+/// told the gap that such a way closes as the arc closes the true one.
+void straighten(btManifoldPoint& point, const btCollisionObject& a, const btCollisionObject& b, btScalar seconds);
+
 /// Of all points of soft objects, once the algorithms have run. Bullet undoes what is deeper than a threshold by moving
 /// the body, without force, so a spring there would not carry; and it takes the slop off its depth. Such a point is
 /// told as one that is hardly deep, with a spring so much stronger.

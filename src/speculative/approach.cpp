@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "speculative/approach.h"
+
+#include "shape/around.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace raycontact {
+
+namespace {
+
+// Faces whose normals' product is larger are flush.
+constexpr double flush = 0.9999;
+// So many flush faces are looked at for a step of the surface.
+constexpr std::size_t most_flush = 64;
+
+Box box_of(const Vec3& p, const Vec3& q, double margin) {
+    const Vec3 grown{margin, margin, margin};
+    return {least(p, q) - grown, most(p, q) + grown};
+}
+
+// Of NearestPoint::edges: the corner of two, and the one edge.
+std::uint32_t corner_of(std::uint32_t edges) {
+    return edges == 3 ? 1 : edges == 6 ? 2 : 0;
+}
+std::uint32_t edge_of(std::uint32_t edges) {
+    return edges == 1 ? 0 : edges == 2 ? 1 : 2;
+}
+
+// The outward direction at a point of a face's border: of an edge the mean of its faces, of a corner its normal.
+Vec3 border_normal(const ShapeData& mesh, std::uint32_t face, std::uint32_t edges) {
+    if ((edges & (edges - 1)) != 0) return mesh.vertex_normals[mesh.mesh.triangles[face][corner_of(edges)]];
+    const std::uint32_t across = mesh.neighbours[face][edge_of(edges)];
+    const Vec3 own = unit(area_normal(mesh, face));
+    return across == NONE ? own : own + unit(area_normal(mesh, across));
+}
+
+} // namespace
+
+std::optional<Approach> Approaches::first_met() const {
+    const Vec3 way = to_ - from_;
+    const double size = length(way);
+    if (!(size > perturbation_)) return std::nullopt;
+    const Box passed = box_of(from_, to_, perturbation_);
+    double first = 1;
+    std::uint32_t face = NONE;
+    for (const NearEdge& near : faces_) {
+        const Vec3 a = target_.corner(near.face, 0), b = target_.corner(near.face, 1), c = target_.corner(near.face, 2);
+        if (!Box{least(a, least(b, c)), most(a, most(b, c))}.touches(passed)) continue;
+        const Vec3 p = a - from_, q = b - from_, r = c - from_;
+        const double u = dot(cross(q, r), way), v = dot(cross(r, p), way), w = dot(cross(p, q), way);
+        if (!((u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0))) continue;
+        const double volume = u + v + w;
+        if (volume == 0) continue;
+        const double at = (u * dot(p, way) + v * dot(q, way) + w * dot(r, way)) / (volume * size * size);
+        if (at < -perturbation_ / size || at > first || (at == first && near.face > face)) continue;
+        first = at;
+        face = near.face;
+    }
+    if (face == NONE) return std::nullopt;
+    const Vec3 out = unit(area_normal(target_, face)), corner = target_.corner(face, 0);
+    if (!(dot(way, out) < 0)) return std::nullopt;
+    return stopped({face, out, dot(from_ - corner, out)}, from_ + first * way);
+}
+
+// Of the places around: an edge is one with both its faces, a corner with all that it shares an edge with.
+bool Approaches::is_nearest(std::uint32_t face, const NearestPoint& point) const {
+    if (point.edges == 0) return true;
+    const Vec3 off = from_ - point.point;
+    const auto is_behind = [&](std::uint32_t v) {
+        const Vec3 there = target_.point(v) - point.point;
+        return dot(there, off) <= 1e-6 * length(there) * length(off);
+    };
+    if ((point.edges & (point.edges - 1)) != 0)
+        return !any_neighbour(target_, target_.mesh.triangles[face][corner_of(point.edges)],
+                              [&](std::uint32_t v) { return !is_behind(v); });
+    const std::uint32_t across = target_.neighbours[face][edge_of(point.edges)];
+    return across == NONE || std::ranges::all_of(target_.mesh.triangles[across], is_behind);
+}
+
+void Approaches::add_near(std::vector<Approach>& found) const {
+    const std::size_t first = found.size();
+    const Box within = box_of(from_, from_, margin_);
+    for (const NearEdge& near : faces_) {
+        const std::uint32_t face = near.face;
+        const Vec3 a = target_.corner(face, 0), b = target_.corner(face, 1), c = target_.corner(face, 2);
+        if (!Box{least(a, least(b, c)), most(a, most(b, c))}.touches(within)) continue;
+        const NearestPoint point = nearest_of(from_, a, b, c);
+        const Vec3 off = from_ - point.point, own = unit(area_normal(target_, face));
+        const double gap = length(off);
+        if (gap > margin_ || !is_nearest(face, point)) continue;
+        Vec3 normal = own;
+        if (point.edges == 0) {
+            if (dot(off, own) < 0) continue;
+        } else if (gap > perturbation_) {
+            if (!(dot(off, border_normal(target_, face, point.edges)) > 0)) continue;
+            normal = (1 / gap) * off;
+        }
+        found.push_back(stopped({face, normal, gap}, point.point));
+    }
+    std::ranges::sort(found.begin() + static_cast<std::ptrdiff_t>(first), found.end(), {},
+                      [](const Approach& one) { return std::pair(one.gap, one.face); });
+}
+
+// Of the faces beside the flush ones, those count that the vertex is above, or below by no more than the margin. So a
+// step of the surface that is lower is no wall.
+Approach Approaches::least_change(const Approach& stops, const Vec3& at) const {
+    const Vec3 way = to_ - from_;
+    double passed = -stops.gap - dot(stops.normal, way);
+    if (!(passed > 0)) return stops;
+    Approach best = stops;
+    std::array<std::uint32_t, most_flush> flat{stops.face};
+    std::size_t count = 1;
+    const Vec3 own = unit(area_normal(target_, stops.face));
+    for (std::size_t i = 0; i < count; ++i)
+        for (std::uint32_t k = 0; k < 3; ++k) {
+            const std::uint32_t across = target_.neighbours[flat[i]][k];
+            if (across == NONE) continue;
+            const Vec3 a = target_.corner(flat[i], k), b = target_.corner(flat[i], (k + 1) % 3);
+            const double away = length(at - nearest_of(at, a, b, b).point);
+            if (away > margin_ + passed) continue;
+            const Vec3 n = unit(area_normal(target_, across));
+            if (dot(n, own) > flush) {
+                const auto end = flat.begin() + static_cast<std::ptrdiff_t>(count);
+                if (count < most_flush && std::find(flat.begin(), end, across) == end) flat[count++] = across;
+                continue;
+            }
+            const double gap = dot(from_ - target_.corner(across, 0), n), past = -gap - dot(n, way);
+            if (past < passed && gap > -margin_ && away <= margin_ + std::max(0.0, past)) {
+                passed = past;
+                best = {across, n, gap};
+            }
+        }
+    return best;
+}
+
+Approach Approaches::stopped(const Approach& stops, const Vec3& at) const {
+    Approach best = least_change(stops, at);
+    best.gap = std::max(0.0, best.gap);
+    return best;
+}
+
+} // namespace raycontact

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "speculative/speculative_pair.h"
+
+#include "pairs/near_edges.h"
+#include "shape/mesh_rays.h"
+
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace raycontact {
+
+/// How a vertex comes to the target's surface, in the target's centred frame.
+struct Approach {
+    std::uint32_t face; ///< of the target
+    Vec3 normal;        ///< of the target, outward, unit
+    double gap;         ///< metres; below 0 it is inside
+};
+
+/// The target's near features that stop a vertex, one after the other (docs/internals/speculative.md).
+class Approaches {
+public:
+    /// faces: what the vertex may come near. from, to: where it is, and will be at the next step.
+    Approaches(const ShapeData& target, std::span<const NearEdge> faces, const Vec3& from, const Vec3& to,
+               double margin, double perturbation)
+        : target_(target), faces_(faces), from_(from), to_(to), margin_(margin), perturbation_(perturbation) {}
+
+    /// What the first face on the way says, if the vertex comes from outside: from a perturbation behind, so that one
+    /// on the surface counts.
+    std::optional<Approach> first_met() const;
+    /// Adds what each place of the target says that is nearest among its surroundings, within the margin, and that the
+    /// vertex is outside of; the nearest first.
+    void add_near(std::vector<Approach>& found) const;
+    /// What averts a contact at a point of a face, and changes the motion least; the contact itself, or that of a face
+    /// beside.
+    Approach least_change(const Approach& stops, const Vec3& at) const;
+
+private:
+    Approach stopped(const Approach& stops, const Vec3& at) const;
+    bool is_nearest(std::uint32_t face, const NearestPoint& point) const;
+
+    const ShapeData& target_;
+    std::span<const NearEdge> faces_;
+    Vec3 from_, to_;
+    double margin_, perturbation_;
+};
+
+} // namespace raycontact

@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "speculative/edge_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+namespace raycontact {
+
+namespace {
+
+// Of a length, what a direction may lean out of the arc between the normals of either edge's faces: flush faces are
+// never quite so.
+constexpr double arc = 0.1;
+// Edges that are more parallel have no one point where they are nearest: vertices have.
+constexpr double least_sine = 1e-3;
+// Edges touch, by PairEdges, from where they pass each other though both bodies are moved inward by perturbations and
+// shaken. Until they are so many perturbations deep, they are near.
+constexpr double perturbations_until_touching = 4.4;
+
+/// A sharp convex edge, where it is and how its ends move until the next step. The target's do not.
+struct Edge {
+    std::uint32_t number;
+    std::array<Vec3, 2> ends, ways;
+    std::array<Vec3, 2> normals; ///< of its faces; a border's has one
+    bool border;
+
+    Vec3 along(double t) const { return ends[1] - ends[0] + t * (ways[1] - ways[0]); }
+    Vec3 point(double at) const { return ends[0] + at * (ends[1] - ends[0]); }
+    Vec3 way(double at) const { return ways[0] + at * (ways[1] - ways[0]); }
+};
+
+// By how much a unit direction leaves the arc between the normals of an edge's faces; of a border the half plane above
+// its face. along: the edge, unit, as its own face runs about it.
+double beyond_arc(const Edge& edge, const Vec3& along, const Vec3& direction) {
+    const double inward = dot(direction, cross(edge.normals[0], along));
+    return std::max(inward, -dot(direction, edge.border ? edge.normals[0] : cross(edge.normals[1], along)));
+}
+
+/// Where the lines of two edges are nearest, from 0 to 1 of each.
+using Places = std::array<double, 2>;
+// Empty unless both points are within them.
+std::optional<Places> nearest_within(const Vec3& p, const Vec3& along, const Vec3& q, const Vec3& other) {
+    const double a = dot(along, along), b = dot(along, other), c = dot(other, other), whole = a * c - b * b;
+    if (!(whole > least_sine * least_sine * a * c)) return std::nullopt;
+    const Vec3 apart = q - p;
+    const double d = dot(along, apart), e = dot(other, apart);
+    const double s = (c * d - b * e) / whole, u = (b * d - a * e) / whole;
+    if (!(s >= 0 && s <= 1 && u >= 0 && u <= 1)) return std::nullopt;
+    return Places{s, u};
+}
+
+// When the lines of a moving edge and a resting one meet, parts of the step, in order: the volume of the two edges is
+// 0.
+std::array<double, 2> meetings(const Edge& edge, const Edge& rests) {
+    const Vec3 turn = edge.ways[1] - edge.ways[0], other = rests.along(0), apart = rests.ends[0] - edge.ends[0];
+    const Vec3 x = cross(edge.along(0), other), dx = cross(turn, other);
+    const double f0 = dot(x, apart), f1 = dot(dx, apart) - dot(x, edge.ways[0]), f2 = -dot(dx, edge.ways[0]);
+    constexpr double never = 2;
+    if (f2 == 0) return {f1 == 0 ? never : -f0 / f1, never};
+    const double root2 = f1 * f1 - 4 * f2 * f0;
+    if (!(root2 >= 0)) return {never, never};
+    const double part = -0.5 * (f1 + (f1 < 0 ? -1 : 1) * std::sqrt(root2));
+    const double one = part / f2, two = part == 0 ? never : f0 / part;
+    return {std::min(one, two), std::max(one, two)};
+}
+
+Box box_of(const Vec3& p, const Vec3& q, double margin) {
+    const Vec3 grown{margin, margin, margin};
+    return {least(p, q) - grown, most(p, q) + grown};
+}
+
+Edge edge_of(const ShapeData& shape, std::uint32_t number) {
+    const auto [start, stop] = ends_of(shape, number);
+    const auto [own, across] = faces_of(shape, number);
+    const Vec3 n = unit(area_normal(shape, own));
+    return {number,
+            {shape.point(start), shape.point(stop)},
+            {},
+            {n, across == NONE ? n : unit(area_normal(shape, across))},
+            across == NONE};
+}
+
+Edge edge_of_a(const OneWay& body, std::uint32_t number) {
+    Edge edge = edge_of(body.source, number);
+    for (std::size_t k = 0; k < 2; ++k) {
+        const Vec3 end = std::exchange(edge.ends[k], transform_point(body.now, edge.ends[k]));
+        if (body.moves) edge.ways[k] = transform_point(body.next, end) - edge.ends[k];
+        edge.normals[k] = rotated(body.now.rotation, edge.normals[k]);
+    }
+    return edge;
+}
+
+// Of the faces of either edge, one that averts the contact and changes the motion less stands for it, if the other edge
+// is above it as a whole, or below by no more than the margin.
+void change_least(FeatureContact& contact, const Edge& edge, const Edge& other, double at, double margin) {
+    const Vec3 way = edge.way(at);
+    double passed = contact.depth - dot(contact.normal, way);
+    if (!(passed > 0)) return;
+    const auto ask = [&](const Vec3& n, const Places& gaps, const Places& past, const std::array<Vec3, 2>& points) {
+        const std::size_t k = past[0] > past[1] ? 0 : 1;
+        if (!(std::min(gaps[0], gaps[1]) > -margin) || !(past[k] < passed)) return;
+        passed = past[k];
+        contact.point = points[k];
+        contact.normal = n;
+        contact.depth = -gaps[k];
+    };
+    for (const Vec3& n : other.normals) {
+        const auto gap = [&](std::size_t k) { return dot(n, edge.ends[k] - other.ends[0]); };
+        const auto past = [&](std::size_t k) { return -gap(k) - dot(n, edge.ways[k]); };
+        ask(n, {gap(0), gap(1)}, {past(0), past(1)}, edge.ends);
+    }
+    for (const Vec3& n : edge.normals) {
+        const auto gap = [&](std::size_t k) { return dot(n, other.ends[k] - edge.ends[0]); };
+        const auto past = [&](std::size_t k) { return dot(n, way) - gap(k); };
+        ask(-1.0 * n, {gap(0), gap(1)}, {past(0), past(1)}, {other.ends[0] - gap(0) * n, other.ends[1] - gap(1) * n});
+    }
+}
+
+class Search {
+public:
+    Search(const SpeculativePair& pair, double least, std::vector<FeatureContact>& found)
+        : pair_(pair), body_(pair.bodies[0]), least_(least), found_(found), touching_(found.size()) {}
+
+    void find(std::span<const NearEdge> near) {
+        for (std::size_t begin = 0, end = 0; begin < near.size(); begin = end) {
+            const std::uint32_t number = near[begin].edge;
+            while (end < near.size() && near[end].edge == number) ++end;
+            if (is_asked(body_.source, number)) find(edge_of_a(body_, number), near.subspan(begin, end - begin));
+        }
+    }
+
+private:
+    // An edge is asked with the lowest of its faces.
+    bool is_asked(const ShapeData& shape, std::uint32_t edge) const {
+        return is_sharp(shape, edge) && hidden_by(shape, edge) > least_ && is_convex(shape, edge);
+    }
+
+    void find(const Edge& edge, std::span<const NearEdge> faces) {
+        Box box = box_of(edge.ends[0], edge.ends[1], pair_.margin);
+        const Box then = box_of(edge.ends[0] + edge.ways[0], edge.ends[1] + edge.ways[1], pair_.margin);
+        box = {least(box.low, then.low), most(box.high, then.high)};
+        for (const NearEdge& one : faces)
+            for (std::uint32_t k = 0; k < 3; ++k) {
+                const std::uint32_t number = 3 * one.face + k;
+                const ShapeData& b = body_.target;
+                if (!is_sharp(b, number)) continue; // nor if another face is lower
+                if (!box.touches(box_of(b.corner(one.face, k), b.corner(one.face, (k + 1) % 3), 0))) continue;
+                if (!is_asked(b, number) || touches(edge.number, number)) continue;
+                const Edge other = edge_of(b, number);
+                if (!body_.moves || !will_meet(edge, other)) find_near(edge, other);
+            }
+    }
+
+    bool touches(std::uint32_t edge, std::uint32_t other) const {
+        return std::any_of(found_.begin(), found_.begin() + std::ptrdiff_t(touching_), [&](const FeatureContact& c) {
+            return c.kind == FeatureKind::edges && c.index == edge && c.other == other;
+        });
+    }
+
+    static bool is_in_arcs(const Edge& edge, const Edge& other, const Vec3& along, const Vec3& n) {
+        return beyond_arc(other, unit(other.along(0)), n) <= arc && beyond_arc(edge, unit(along), -1.0 * n) <= arc;
+    }
+
+    bool will_meet(const Edge& edge, const Edge& other) {
+        for (const double t : meetings(edge, other)) {
+            if (!(t >= 0 && t <= 1)) continue;
+            const Vec3 along = edge.along(t);
+            const auto at = nearest_within(edge.ends[0] + t * edge.ways[0], along, other.ends[0], other.along(0));
+            if (!at) continue;
+            const Vec3 n = unit(cross(along, other.along(0)));
+            const double lean = dot(n, edge.way((*at)[0]));
+            const Vec3 out = lean > 0 ? -1.0 * n : n;
+            if (lean == 0 || !is_in_arcs(edge, other, along, out)) continue;
+            tell(edge, other, *at, out);
+            return true;
+        }
+        return false;
+    }
+
+    void find_near(const Edge& edge, const Edge& other) {
+        const Vec3 along = edge.along(0);
+        const auto at = nearest_within(edge.ends[0], along, other.ends[0], other.along(0));
+        if (!at) return;
+        Vec3 n = unit(cross(along, other.along(0)));
+        if (dot(n, other.normals[0] + other.normals[1]) < 0) n = -1.0 * n;
+        const double gap = dot(n, edge.point((*at)[0]) - other.point((*at)[1]));
+        if (gap >= -perturbations_until_touching * pair_.perturbation && gap <= pair_.margin
+            && is_in_arcs(edge, other, along, n))
+            tell(edge, other, *at, n);
+    }
+
+    void tell(const Edge& edge, const Edge& other, const Places& at, const Vec3& n) {
+        const double gap = std::max(0.0, dot(n, edge.point(at[0]) - other.point(at[1])));
+        FeatureContact contact{Side::a, FeatureKind::edges, edge.number, other.number, edge.point(at[0]), n, -gap};
+        change_least(contact, edge, other, at[0], pair_.margin);
+        contact.depth = std::min(0.0, contact.depth);
+        found_.push_back(contact);
+    }
+
+    const SpeculativePair& pair_;
+    const OneWay& body_;
+    double least_;
+    std::vector<FeatureContact>& found_;
+    std::size_t touching_; ///< of found_: what was there
+};
+
+} // namespace
+
+void change_least(const SpeculativePair& pair, FeatureContact& contact) {
+    const OneWay& body = pair.bodies[0];
+    if (!body.moves || contact.depth > pair.margin) return;
+    const Edge edge = edge_of_a(body, contact.index);
+    const Vec3 along = edge.along(0);
+    const double at = dot(contact.point - edge.ends[0], along) / dot(along, along);
+    change_least(contact, edge, edge_of(body.target, contact.other), std::clamp(at, 0.0, 1.0), pair.margin);
+}
+
+void find_speculative_edges(const SpeculativePair& pair, std::span<const NearEdge> near, double least,
+                            std::vector<FeatureContact>& found) {
+    Search(pair, least, found).find(near);
+}
+
+} // namespace raycontact

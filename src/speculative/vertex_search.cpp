@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "speculative/vertex_search.h"
+
+#include "shape/around.h"
+
+#include <algorithm>
+
+namespace raycontact {
+
+namespace {
+
+// A direction may leave a vertex's normal cone by this, of a length; and the vertex looks at the target at all.
+constexpr double cone = 0.1, sideways = 1e-6;
+// Planes whose normals' product is larger are one.
+constexpr double same_plane = 0.995;
+
+// Calls visit(vertex, its near faces) for each.
+template <class Visit>
+void by_vertex(std::span<const NearEdge> near, Visit&& visit) {
+    for (std::size_t begin = 0, end = 0; begin < near.size(); begin = end) {
+        while (end < near.size() && near[end].edge == near[begin].edge) ++end;
+        visit(near[begin].edge, near.subspan(begin, end - begin));
+    }
+}
+
+// Whether a vertex reaches farthest against a target's normal, of all about it.
+bool reaches_farthest(const OneWay& body, std::uint32_t v, const Vec3& normal) {
+    const ShapeData& source = body.source;
+    const Vec3 back = rotated_back(body.now.rotation, normal), p = source.point(v);
+    if (!(dot(source.vertex_normals[v], back) < -sideways)) return false;
+    return !any_neighbour(source, v, [&](std::uint32_t w) {
+        const Vec3 off = source.point(w) - p;
+        return dot(off, back) < -cone * length(off);
+    });
+}
+
+// Out of the target.
+Vec3 normal_of(const kernels::LocalContact& c) {
+    return {c.normal.x, c.normal.y, c.normal.z};
+}
+
+} // namespace
+
+void VertexSearch::find(const SpeculativePair& pair, const NearEdges& near,
+                        const std::array<std::span<const kernels::LocalContact>, 2>& touching,
+                        std::vector<FeatureContact>& found) {
+    for (const Side side : {Side::a, Side::b}) {
+        const auto own = static_cast<std::size_t>(side);
+        const ShapeData& source = pair.bodies[own].source;
+        const std::size_t first = found.size();
+        followers_.clear();
+        by_vertex(near[own], [&](std::uint32_t v, std::span<const NearEdge> faces) {
+            const auto at = std::ranges::lower_bound(touching[own], v, {}, &kernels::LocalContact::vertex);
+            find(pair, side, v, faces, at != touching[own].end() && at->vertex == v ? &*at : nullptr, found);
+        });
+        if (followers_.empty()) continue;
+        std::ranges::sort(followers_, {}, &Follower::vertex);
+        for (const kernels::LocalContact& c : touching[own]) add_followers(source, side, c.vertex, normal_of(c), found);
+        for (std::size_t k = first; k < found.size(); ++k)
+            add_followers(source, side, found[k].index, Vec3(found[k].normal), found);
+    }
+}
+
+// A vertex in contact is asked where its contact puts it, now and at the next step.
+void VertexSearch::find(const SpeculativePair& pair, Side side, std::uint32_t vertex, std::span<const NearEdge> faces,
+                        const kernels::LocalContact* touches, std::vector<FeatureContact>& found) {
+    const OneWay& body = pair.bodies[static_cast<std::size_t>(side)];
+    const Vec3 point = body.source.point(vertex), p = transform_point(body.now, point);
+    Vec3 from = p, to = transform_point(body.next, point);
+    if (touches != nullptr) {
+        const Vec3 out = normal_of(*touches);
+        const double depth = double(touches->distance) * double(touches->facing) + 2 * pair.perturbation;
+        from = from + depth * out;
+        to = to + std::max(0.0, depth - dot(out, to - p)) * out;
+    }
+    const Approaches approaches(body.target, faces, from, to, pair.margin, pair.perturbation);
+    approaches_.clear();
+    const auto met = body.moves ? approaches.first_met() : std::nullopt;
+    if (met) approaches_.push_back(*met);
+    approaches.add_near(approaches_);
+    const std::size_t first = found.size();
+    for (const Approach& one : approaches_) {
+        const auto is_alike = [&](const Vec3& n) { return dot(n, one.normal) > same_plane; };
+        if (touches != nullptr && is_alike(normal_of(*touches))) continue;
+        if (std::any_of(found.begin() + static_cast<std::ptrdiff_t>(first), found.end(),
+                        [&](const FeatureContact& c) { return is_alike(c.normal); }))
+            continue;
+        if (!reaches_farthest(body, vertex, one.normal)) continue;
+        const bool has_other = touches != nullptr || found.size() > first;
+        found.push_back({side, has_other ? FeatureKind::vertex_face : FeatureKind::vertex, vertex, one.face, p,
+                         one.normal, -one.gap});
+    }
+    if (met && touches == nullptr && found.size() == first) followers_.push_back({vertex, p, *met});
+}
+
+// What follows behind a vertex, against the same plane, meets it as soon as the body turns about that vertex.
+void VertexSearch::add_followers(const ShapeData& source, Side side, std::uint32_t vertex, const Vec3& normal,
+                                 std::vector<FeatureContact>& found) {
+    any_neighbour(source, vertex, [&](std::uint32_t w) {
+        const auto at = std::ranges::lower_bound(followers_, w, {}, &Follower::vertex);
+        if (at == followers_.end() || at->vertex != w || !(dot(at->approach.normal, normal) > same_plane)) return false;
+        found.push_back(
+            {side, FeatureKind::vertex, w, at->approach.face, at->point, at->approach.normal, -at->approach.gap});
+        at->approach.normal = {}; // once
+        return false;
+    });
+}
+
+} // namespace raycontact
