@@ -24,7 +24,7 @@ struct Placed {
 /// Relative to `origin`, so that far away nothing is lost.
 Placed place(const Shape& shape, const Pose& pose, const Vec3& origin) {
     Placed placed;
-    for (const Vec3& v : shape.vertices())
+    for (const Vec3& v : shape.file_vertices())
         placed.vertices.push_back(rotated(pose.rotation, v) + (pose.translation - origin));
     placed.box = box_of(placed.vertices);
     return placed;
@@ -35,9 +35,10 @@ struct Corner {
     double x, y, first, second;
 };
 
-/// A convex polygon: a triangle, and a corner more for each line that clips it: three of a triangle, fold and floor.
+/// A convex polygon: a triangle, and a corner more for each line that clips it, of which there are six. Rounding may
+/// have a thin one cross a line at every other corner.
 struct Polygon {
-    std::array<Corner, 12> corners;
+    std::array<Corner, 32> corners;
     std::size_t count = 0;
     void add(const Corner& c) { corners[count++] = c; }
 };
@@ -63,11 +64,12 @@ double doubled_area(const Corner& p, const Corner& q, const Corner& r) {
 }
 
 /// The integral of a height that is linear over the polygon.
-double volume_below(const Polygon& polygon, double Corner::*height) {
+template <class Height>
+double volume_below(const Polygon& polygon, Height height) {
     double sum = 0;
     for (std::size_t k = 2; k < polygon.count; ++k) {
         const Corner &p = polygon.corners[0], &q = polygon.corners[k - 1], &r = polygon.corners[k];
-        sum += doubled_area(p, q, r) * (p.*height + q.*height + r.*height) / 6;
+        sum += doubled_area(p, q, r) * (height(p) + height(q) + height(r)) / 6;
     }
     return sum;
 }
@@ -127,15 +129,16 @@ double volume_below_both(const Face& f, const Face& g) {
         if (shared.count < 3) return 0;
     }
     for (std::size_t k = 0; k < shared.count; ++k) shared.corners[k].second = height_of(g, shared.corners[k]);
-    const auto above_floor = [](const Polygon& polygon, double Corner::*height) {
-        return volume_below(clipped(polygon, [&](const Corner& c) { return c.*height; }), height);
-    };
-    double sum = above_floor(clipped(shared, [](const Corner& c) { return c.second - c.first; }), &Corner::first);
-    // Of faces that coincide the line above has taken all.
-    if (std::any_of(shared.corners.begin(), shared.corners.begin() + static_cast<std::ptrdiff_t>(shared.count),
-                    [](const Corner& c) { return c.first > c.second; }))
-        sum += above_floor(clipped(shared, [](const Corner& c) { return c.first - c.second; }), &Corner::second);
-    return sum;
+    shared = clipped(shared, [](const Corner& c) { return c.first; });
+    shared = clipped(shared, [](const Corner& c) { return c.second; });
+    double higher = 0;
+    for (std::size_t k = 0; k < shared.count; ++k) higher += shared.corners[k].first - shared.corners[k].second;
+    // Below the lower one, less where that is above the other. Of faces that coincide rounding alone says where that
+    // is; but it is by rounding alone, too, and so is what it takes away.
+    const double sign = higher > 0 ? -1 : 1;
+    const auto above = [&](const Corner& c) { return sign * (c.first - c.second); };
+    return volume_below(shared, [&](const Corner& c) { return higher > 0 ? c.second : c.first; })
+           - volume_below(clipped(shared, above), above);
 }
 
 } // namespace

@@ -102,6 +102,16 @@ Placing::Placing(const std::array<double, 9>& turn, const Vec3& translation, con
     shift_rest = {rest(0), rest(1), rest(2)};
 }
 
+ExactVec3 exact_place(const PlacedPoint& point) {
+    const auto along = [&](std::size_t k) {
+        const Placing& at = *point.placing;
+        Dyadic sum = Dyadic(axis(at.shift, k)) + axis(at.shift_rest, k);
+        for (std::size_t i = 0; i < 3; ++i) sum = sum + Dyadic(at.rotation[3 * k + i]) * axis(point.own, i);
+        return sum;
+    };
+    return {along(0), along(1), along(2)};
+}
+
 Vec3 own_point(const Vec3& point) {
     return {snap(point.x), snap(point.y), snap(point.z)};
 }

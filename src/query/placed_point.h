@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "mesh/exact_vector.h"
+
 #include <raycontact/pose.h>
 
 #include <array>
@@ -26,6 +28,9 @@ struct PlacedPoint {
     Vec3 own;   ///< in its own frame, metres; coordinates below 1e-36 are 0 (own_point())
     const Placing* placing;
 };
+
+/// Where it lies along the world's axes, exactly.
+ExactVec3 exact_place(const PlacedPoint& point);
 
 /// Coordinates below 1e-36 m count as 0: the products of three, with the last bit of each, then stay exact.
 Vec3 own_point(const Vec3& point);

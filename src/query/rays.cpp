@@ -2,6 +2,7 @@
 #include <raycontact/query.h>
 
 #include "executor/float_environment.h"
+#include "mesh/exact_vector.h"
 #include "mesh/predicates.h"
 #include "query/checks.h"
 #include "query/shape_pair.h"
@@ -27,9 +28,30 @@ struct BodyRay {
 struct FaceHit {
     std::uint32_t face = NONE; ///< of the shape
     double distance = infinite;
+    double error = 0; ///< of the distance, at most
 };
 
-/// Casts a ray at a mesh. Which triangles it meets is exact; how far away they are is rounded.
+/// A distance as numerator / denominator, which is above 0.
+struct ExactDistance {
+    Dyadic numerator, denominator;
+
+    /// Where a ray meets the plane of a triangle that is not parallel to it.
+    ExactDistance(const BodyRay& ray, const std::array<Vec3, 3>& t) {
+        const ExactVec3 normal = area_normal(t[0], t[1], t[2]);
+        numerator = dot(normal, ExactVec3(t[0]) - ray.origin);
+        denominator = dot(normal, ray.direction);
+        if (denominator.sign() > 0) return;
+        numerator = Dyadic() - numerator;
+        denominator = Dyadic() - denominator;
+    }
+    /// -1: less than the other one.
+    int order(const ExactDistance& other) const {
+        return (numerator * other.denominator - other.numerator * denominator).sign();
+    }
+};
+
+/// Casts a ray at a mesh. Which triangles it meets, and which of them first, is exact; how far away they are is
+/// rounded.
 class Caster {
 public:
     Caster(const Shape& shape, const BodyRay& ray, double most, bool any)
@@ -59,7 +81,7 @@ private:
         }
         const auto farthest = [&] {
             if (any_ && best_.face != NONE) return -infinite;
-            return best_.distance * (1 + 1e-12) - shift_ + slack_;
+            return best_.distance * (1 + 1e-12) + best_.error - shift_ + slack_;
         };
         const auto enter = [&](const kernels::Node& node, Lanes<double>& first) {
             Lanes<double> last;
@@ -84,38 +106,48 @@ private:
         for (std::uint32_t on = triangles_on_line(block, line_, 1); on != 0; on &= on - 1) {
             const std::uint32_t face = block.triangle[static_cast<std::size_t>(std::countr_zero(on))];
             if (any_ && best_.face != NONE) return;
-            const double at = meet(face);
-            if (at > best_.distance || (at == best_.distance && !is_lower(face))) continue;
-            if (at == infinite) continue;
-            best_ = {face, at};
+            const FaceHit hit = meet(face);
+            if (hit.face != NONE && is_closer(hit)) best_ = hit;
         }
     }
 
-    bool is_lower(std::uint32_t face) const {
-        return best_.face == NONE || shape_.triangle_index()[face] < shape_.triangle_index()[best_.face];
+    bool is_closer(const FaceHit& hit) const {
+        if (best_.face == NONE) return hit.distance <= best_.distance;
+        if (std::fabs(hit.distance - best_.distance) > hit.error + best_.error) return hit.distance < best_.distance;
+        const int order = ExactDistance(ray_, corners(hit.face)).order({ray_, corners(best_.face)});
+        return order < 0 || (order == 0 && shape_.triangle_index()[hit.face] < shape_.triangle_index()[best_.face]);
     }
 
-    // How far along the ray it meets a triangle; edges belong to it. Infinite: it does not.
-    double meet(std::uint32_t face) const {
+    std::array<Vec3, 3> corners(std::uint32_t face) const {
         std::array<Vec3, 3> t;
         for (std::size_t k = 0; k < 3; ++k) t[k] = own_point(mesh_.file_vertex(mesh_.mesh.triangles[face][k]));
+        return t;
+    }
+
+    // Where the ray meets a triangle, if it does; edges belong to it.
+    FaceHit meet(std::uint32_t face) const {
+        const std::array<Vec3, 3> t = corners(face);
         int facing = 0; // 1: along the normal
         for (std::size_t k = 0; k < 3; ++k) {
             const int side = line_side(ray_.origin, ray_.direction, t[(k + 1) % 3], t[(k + 2) % 3]);
-            if (side * facing < 0) return infinite;
+            if (side * facing < 0) return {};
             if (side != 0) facing = side;
         }
-        if (facing == 0) return infinite; // edge-on, or without area
+        if (facing == 0) return {}; // edge-on, or without area
         const int behind = orient3d(t[0], t[1], t[2], ray_.origin);
-        if (behind == 0) return 0;
-        if (behind != facing) return infinite;
-        const Vec3 &o = ray_.origin, &d = ray_.direction;
-        const std::array along{dot(t[0] - o, d), dot(t[1] - o, d), dot(t[2] - o, d)};
-        const auto [nearest, farthest] = std::minmax({along[0], along[1], along[2]});
-        const Vec3 normal = cross(t[1] - t[0], t[2] - t[0]);
-        const double at = dot(normal, t[0] - o) / dot(normal, d);
-        // A needle's normal may be anything: no triangle is farther or nearer than its corners.
-        return std::max(0.0, at >= nearest && at <= farthest ? at : std::clamp(at, nearest, farthest));
+        if (behind == 0) return {face, 0, 0};
+        if (behind != facing) return {};
+        const Vec3 p = t[1] - t[0], q = t[2] - t[0], off = t[0] - ray_.origin, normal = cross(p, q);
+        const double fall = dot(normal, ray_.direction), sizes = length(p) * length(q);
+        constexpr double few_roundings = 1e-14, flattest = 0.01;
+        if (std::fabs(fall) > flattest * sizes) {
+            const double at = std::max(0.0, dot(normal, off) / fall);
+            return {face, at, few_roundings * sizes / std::fabs(fall) * (length(off) + at)};
+        }
+        // A needle, or a ray that runs along the face: double would say anything.
+        const ExactDistance exact(ray_, t);
+        const double at = ratio(exact.numerator, exact.denominator);
+        return {face, at, few_roundings * at};
     }
 
     const Shape& shape_;

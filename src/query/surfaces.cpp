@@ -21,42 +21,6 @@ Box grown(const Box& box, double by) {
     return {box.low - grow, box.high + grow};
 }
 
-// How far a point of a triangle's plane is outside of the triangle, roughly; 0 inside.
-double off_triangle(const Vec3& p, const Corners& t) {
-    const Vec3 normal = cross(t[1] - t[0], t[2] - t[0]);
-    double off = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const Vec3 along = t[(k + 1) % 3] - t[k];
-        off = std::max(off, -dot(cross(along, p - t[k]), normal) / (length(along) * length(normal)));
-    }
-    return off;
-}
-
-// Where two triangles that meet do so, to rounding: where an edge of one passes the other, or, in a common plane, a
-// corner of one or the middle of what their boxes share.
-Vec3 meeting_point(const Corners& p, const Corners& q) {
-    const Box a = box_of(p), b = box_of(q);
-    Vec3 best = 0.5 * (most(a.low, b.low) + least(a.high, b.high));
-    double least_off = infinite;
-    const auto consider = [&](const Corners& edges, const Corners& t) {
-        const Vec3 normal = cross(t[1] - t[0], t[2] - t[0]);
-        for (std::size_t k = 0; k < 3; ++k) {
-            const Vec3 &from = edges[k], &to = edges[(k + 1) % 3];
-            const double before = dot(normal, from - t[0]), after = dot(normal, to - t[0]);
-            if (before * after > 0) continue;
-            const double part = before == after ? 0 : before / (before - after);
-            const Vec3 at = from + part * (to - from);
-            const double off = off_triangle(at, t);
-            if (off >= least_off) continue;
-            least_off = off;
-            best = at;
-        }
-    };
-    consider(p, q);
-    consider(q, p);
-    return best;
-}
-
 /// Two points and their squared distance, m^2.
 struct Span {
     double squared = infinite;
@@ -168,7 +132,7 @@ public:
         : pair_(pair), grow_a_(rounding_of(pair.a()) + float_rounding_of(pair)),
           grow_b_(rounding_of(pair.b().shape()) + float_rounding_of(pair)) {}
 
-    const std::optional<TrianglePair>& found() const { return found_; }
+    const std::optional<MeetingTriangles>& found() const { return found_; }
 
     void look(const kernels::TriangleBlock& of_a, const kernels::TriangleBlock& of_b) {
         const BlockBoxes boxes_a(of_a, grow_a_), boxes_b(of_b, grow_b_);
@@ -183,8 +147,7 @@ public:
                 const std::uint32_t b = of_b.triangle[k];
                 if (squares_b[k] > 0 || pair_.b().shape().is_flat(b)) continue;
                 if (!triangles_meet(p, pair_.b().triangle(b))) continue;
-                const Vec3 point = meeting_point(corners, pair_.corners_of_b(b));
-                found_ = {a, b, point, point};
+                found_ = {a, b};
                 return;
             }
         }
@@ -193,7 +156,7 @@ public:
 private:
     const ShapePair& pair_;
     double grow_a_, grow_b_;
-    std::optional<TrianglePair> found_;
+    std::optional<MeetingTriangles> found_;
 };
 
 /// The closest of the triangles seen so far. The way between them nearly parts all that is farther: along it, both
@@ -351,7 +314,7 @@ void descend_to_touching(const ShapePair& pair, Done&& done, Visit&& visit) {
 
 } // namespace
 
-std::optional<TrianglePair> meeting_triangles(const ShapePair& pair) {
+std::optional<MeetingTriangles> meeting_triangles(const ShapePair& pair) {
     Meeting meeting(pair);
     descend_to_touching(
         pair, [&] { return meeting.found().has_value(); },

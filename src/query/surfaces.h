@@ -15,8 +15,12 @@ struct TrianglePair {
     Vec3 point_a, point_b;
 };
 
+/// A triangle of each shape.
+struct MeetingTriangles {
+    std::uint32_t a, b;
+};
 /// The first triangles found that meet, exactly.
-std::optional<TrianglePair> meeting_triangles(const ShapePair& pair);
+std::optional<MeetingTriangles> meeting_triangles(const ShapePair& pair);
 
 /// Visits triangles of which one each has a box, widened by rounding, that touches the other's. In any order, each
 /// once.

@@ -4,6 +4,7 @@
 #include "executor/float_environment.h"
 #include "query/checks.h"
 #include "query/inside.h"
+#include "query/shared_point.h"
 #include "query/surfaces.h"
 
 #include <algorithm>
@@ -30,6 +31,10 @@ std::optional<Inner> inner_vertex(const Shape& a, const Pose& pose_a, const Shap
     return std::nullopt;
 }
 
+Vec3 point_of(const MeetingTriangles& found, const ShapePair& pair) {
+    return pair.to_world(shared_point(pair.triangle_of_a(found.a), pair.b().triangle(found.b)));
+}
+
 std::uint32_t in_file(const Shape& shape, std::uint32_t triangle) {
     return triangle == Shape::no_triangle ? triangle : shape.triangle_index()[triangle];
 }
@@ -41,13 +46,17 @@ std::optional<Vec3> common_point(const Shape& a, const Pose& pose_a, const Shape
     check_placed(pose_a, "pose of the first mesh");
     check_placed(pose_b, "pose of the second mesh");
     const ShapePair pair(a, pose_a, b, pose_b);
-    if (const auto found = meeting_triangles(pair)) return pair.to_world(found->point_a);
+    if (const auto found = meeting_triangles(pair)) return point_of(*found, pair);
     if (const auto inner = inner_vertex(a, pose_a, b, pose_b, pair)) return inner->point;
     return std::nullopt;
 }
 
 bool intersects(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) {
-    return common_point(a, pose_a, b, pose_b).has_value();
+    const FloatEnvironment environment;
+    check_placed(pose_a, "pose of the first mesh");
+    check_placed(pose_b, "pose of the second mesh");
+    const ShapePair pair(a, pose_a, b, pose_b);
+    return meeting_triangles(pair) || inner_vertex(a, pose_a, b, pose_b, pair);
 }
 
 std::optional<Distance> distance(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b, double max) {
@@ -57,7 +66,7 @@ std::optional<Distance> distance(const Shape& a, const Pose& pose_a, const Shape
     check_reach(max, "distance");
     const ShapePair pair(a, pose_a, b, pose_b);
     if (const auto found = meeting_triangles(pair)) {
-        const Vec3 point = pair.to_world(found->point_a);
+        const Vec3 point = point_of(*found, pair);
         return Distance{0, point, point, in_file(a, found->a), in_file(b, found->b)};
     }
     if (const auto inner = inner_vertex(a, pose_a, b, pose_b, pair)) {
