@@ -51,7 +51,7 @@ std::optional<ClosestPoint> closest_point(const Shape& shape, const Pose& pose, 
     nearest_first<double>(mesh, farthest2, away, look);
     if (!mesh.slivers.nodes.empty()) nearest_first<double>(mesh.slivers, farthest2, away, look);
     if (!nearest) return std::nullopt;
-    const double metres = length(rotated(pose.rotation, sought - nearest->point()));
+    const double metres = length(rotated(pose.rotation, nearest->away()));
     if (metres > max) return std::nullopt;
     return ClosestPoint{shape.triangle_index()[face], transform_point(pose, nearest->point()), metres};
 }

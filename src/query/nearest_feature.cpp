@@ -82,7 +82,8 @@ void NearestFeature::set_corner(std::size_t k) {
     std::swap(triangle_.corners[0], triangle_.corners[k]);
     std::swap(triangle_.vertices[0], triangle_.vertices[k]);
     point_ = triangle_.corners[0];
-    distance_ = length(sought_ - point_);
+    away_ = sought_ - point_;
+    distance_ = length(away_);
     error_ = few_roundings * distance_;
 }
 
@@ -98,9 +99,10 @@ void NearestFeature::set_edge(std::size_t k) {
         std::swap(triangle_.vertices[0], triangle_.vertices[1]);
     }
     const Vec3 &from = triangle_.corners[0], off = sought_ - from, along = triangle_.corners[1] - from;
-    const double size2 = dot(along, along);
-    point_ = from + (dot(off, along) / size2) * along;
-    distance_ = length(cross(along, off)) / std::sqrt(size2);
+    const Vec3 part = (dot(off, along) / dot(along, along)) * along;
+    point_ = from + part;
+    away_ = off - part;
+    distance_ = length(away_);
     error_ = few_roundings * length(off);
 }
 
@@ -111,19 +113,16 @@ void NearestFeature::set_face() {
     const double size2 = dot(normal, normal), sizes = length(p) * length(q);
     constexpr double flattest = 0.01;
     if (size2 > flattest * flattest * sizes * sizes) {
-        const double part = dot(normal, off) / size2;
-        point_ = sought_ - part * normal;
-        distance_ = std::fabs(part) * std::sqrt(size2);
+        away_ = (dot(normal, off) / size2) * normal;
         error_ = few_roundings * length(off) * sizes / std::sqrt(size2);
-        return;
+    } else { // the normal of a needle is not accurate in double
+        const ExactVec3 exact = area_normal(a, b, c);
+        const Dyadic height = dot(exact, ExactVec3(sought_) - a), exact2 = dot(exact, exact);
+        away_ = {ratio(exact.x * height, exact2), ratio(exact.y * height, exact2), ratio(exact.z * height, exact2)};
+        error_ = few_roundings * length(away_);
     }
-    // The normal of a needle is not accurate in double.
-    const ExactVec3 exact = area_normal(a, b, c);
-    const Dyadic height = dot(exact, ExactVec3(sought_) - a), exact2 = dot(exact, exact);
-    const Vec3 way{ratio(exact.x * height, exact2), ratio(exact.y * height, exact2), ratio(exact.z * height, exact2)};
-    point_ = sought_ - way;
-    distance_ = length(way);
-    error_ = few_roundings * distance_;
+    point_ = a + (off - away_);
+    distance_ = length(away_);
 }
 
 NearestFeature::Squared NearestFeature::squared() const {

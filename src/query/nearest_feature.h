@@ -21,6 +21,7 @@ public:
     NearestFeature(const Vec3& sought, const NumberedTriangle& triangle);
 
     const Vec3& point() const { return point_; }
+    const Vec3& away() const { return away_; } ///< from there to what is sought; less rounded than their difference
     double distance() const { return distance_; }
     double error() const { return error_; } ///< of the distance, at most
     /// -1: nearer than another one, which is of the same mesh and the same point; 0: as near. Exact.
@@ -38,7 +39,7 @@ private:
     Vec3 sought_;
     NumberedTriangle triangle_; ///< turned: the feature is corner 0, or the edge from 0 to 1, or the face
     Kind kind_ = Kind::corner;
-    Vec3 point_;
+    Vec3 point_, away_;
     double distance_ = 0, error_ = 0;
 };
 
