@@ -35,8 +35,7 @@ std::optional<ClosestPoint> closest_point(const Shape& shape, const Pose& pose, 
             const std::uint32_t t = block.triangle[lane];
             if (!(squares[lane] <= farthest * farthest) || t == NONE) continue;
             NumberedTriangle triangle{{}, mesh.mesh.triangles[t]};
-            for (std::size_t k = 0; k < 3; ++k)
-                triangle.corners[k] = own_point(mesh.file_vertex(triangle.vertices[k]));
+            for (std::size_t k = 0; k < 3; ++k) triangle.corners[k] = own_point(mesh.file_vertex(triangle.vertices[k]));
             const NearestFeature feature(sought, triangle);
             if (feature.distance() - feature.error() > farthest) continue;
             if (nearest) {

@@ -27,7 +27,8 @@ int is_past(const Vec3& p, const Vec3& a, const Vec3& b) {
 int is_within(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
     const Vec3 off = p - a, along = b - a, other = c - a;
     const double value = dot(cross(along, other), cross(along, off)), size2 = dot(along, along);
-    if (value * value > squared_roundings * size2 * size2 * dot(other, other) * dot(off, off)) return value > 0 ? 1 : -1;
+    if (value * value > squared_roundings * size2 * size2 * dot(other, other) * dot(off, off))
+        return value > 0 ? 1 : -1;
     const ExactVec3 exact = ExactVec3(b) - a;
     return dot(cross(exact, ExactVec3(c) - a), cross(exact, ExactVec3(p) - a)).sign();
 }

@@ -91,12 +91,10 @@ TEST(ExactQueries, RaysAlongEdgesHitTheMesh) {
 TEST(ExactQueries, OfTrianglesHitAtOnceTheLowestCounts) {
     Random random(32);
     Asked asked;
-    const std::vector<Mesh> meshes{reference::grid_box_mesh(4),
-                                   reference::grid_box_mesh(2),
-                                   in_quarters(reference::l_prism_mesh()),
-                                   in_quarters(reference::frame_mesh()),
-                                   extruded("gear", {{0, 0}, {2, 0}, {2, 1}, {1.5, 0.5}, {1, 1}, {0.5, 0.5}, {0, 1}},
-                                            {}, 0, 1)};
+    const std::vector<Mesh> meshes{
+        reference::grid_box_mesh(4), reference::grid_box_mesh(2), in_quarters(reference::l_prism_mesh()),
+        in_quarters(reference::frame_mesh()),
+        extruded("gear", {{0, 0}, {2, 0}, {2, 1}, {1.5, 0.5}, {1, 1}, {0.5, 0.5}, {0, 1}}, {}, 0, 1)};
     for (const Mesh& mesh : meshes) {
         const Subject subject(mesh);
         for (int i = 0; i < 1500; ++i) {
@@ -130,8 +128,8 @@ TEST(ExactQueries, RaysAtAnythingHitTheFirstTriangle) {
 TEST(ExactQueries, OfTrianglesAsCloseTheLowestCounts) {
     Random random(34);
     int ties = 0, all = 0;
-    std::vector<Mesh> meshes{reference::grid_box_mesh(4), in_quarters(reference::l_prism_mesh()), reference::cone_mesh(),
-                             in_quarters(reference::frame_mesh()), needles()};
+    std::vector<Mesh> meshes{reference::grid_box_mesh(4), in_quarters(reference::l_prism_mesh()),
+                             reference::cone_mesh(), in_quarters(reference::frame_mesh()), needles()};
     for (int m = 0; m < 40; ++m) meshes.push_back(coarse_solid(random));
     for (const Mesh& mesh : meshes) {
         const Subject subject(mesh);

@@ -8,6 +8,7 @@
 #pragma GCC diagnostic ignored "-Wshadow"
 #pragma GCC diagnostic ignored "-Wpedantic"
 #include <CGAL/Exact_rational.h>
+#include <CGAL/Lazy_exact_nt.h>
 #include <CGAL/Simple_cartesian.h>
 #include <CGAL/squared_distance_3.h>
 #pragma GCC diagnostic pop
@@ -20,7 +21,7 @@ namespace raycontact::exact {
 
 namespace {
 
-using Number = CGAL::Exact_rational;
+using Number = CGAL::Lazy_exact_nt<CGAL::Exact_rational>; // intervals first
 using Kernel = CGAL::Simple_cartesian<Number>;
 using Point = Kernel::Point_3;
 using Vector = Kernel::Vector_3;
