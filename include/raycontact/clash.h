@@ -45,11 +45,11 @@ struct Clash {
     /// Of the deepest contact, metres; 0: they touch; negative: minus the distance of parts that are near. None: no
     /// rule of contact gives one, as a part is open, intersects itself or winds the wrong way somewhere.
     std::optional<double> depth = 0;
-    double distance = 0; ///< of parts that share no point, metres
-    Vec3 point;   ///< of that contact: on one part's surface, in the other; else one that both share; near: point_a
-    Vec3 point_a; ///< of that contact, or the closest one: on the surface of a
-    Vec3 point_b; ///< likewise on that of b
-    Vec3 normal;  ///< of that contact, unit, from a to b; near: the way from point_a to point_b; else 0
+    double distance = 0;      ///< of parts that share no point, metres
+    Vec3 point;               ///< in both parts: of that contact, on the surface of one; else any; near: point_a
+    Vec3 point_a;             ///< of that contact, or the closest one: on the surface of a
+    Vec3 point_b;             ///< likewise on that of b
+    Vec3 normal;              ///< of that contact, unit, from a to b; near: the way from point_a to point_b; else 0
     std::size_t contacts = 0; ///< how many the two have
     bool open_a = false; ///< a is not closed: nothing is inside it, and a depth says how far it reaches into b alone
     bool open_b = false; ///< likewise b
@@ -92,15 +92,16 @@ struct ClashReport {
 RAYCONTACT_API std::vector<AssemblyPart> load_parts(const std::vector<std::filesystem::path>& files,
                                                     std::vector<std::string>* left_out = nullptr);
 
-/// Every pair of parts that shares a point (exactly, as intersects()) or is near. Depths are those of collide(); where
-/// faces coincide, so that rounding would decide, small moves tell touching parts from others. Throws InputError for
-/// fewer than two parts, for a pose that is not rigid, a length that is negative or not finite, a pattern that matches
-/// nothing, `against` that matches all, and more than 1024 threads.
+/// Every pair of parts that shares a point (exactly, as intersects()) or is near. Depths are those of collide() with
+/// Direction::refined, so that of threads and tubes none is deeper than the way out is long; where faces coincide, so
+/// that rounding would decide, small moves tell touching parts from others. Throws InputError for fewer than two parts,
+/// for a pose that is not rigid, a length that is negative or not finite, a pattern that matches nothing, `against`
+/// that matches all, and more than 1024 threads.
 RAYCONTACT_API ClashReport find_clashes(std::span<const AssemblyPart> parts, const ClashOptions& options = {});
 
-/// The volume that two closed, outward meshes share, m^3; exact but for rounding in double. No predicate decides
-/// anything, so touching and flush faces are no special cases. Where a mesh winds around a point more than once, as
-/// often counts the point. Far slower than contacts. Throws InputError for poses as intersects().
+/// The volume that two closed, outward meshes share, m^3, by Shape::file_vertices(); exact but for rounding in double.
+/// No predicate decides anything, so touching and flush faces are no special cases. Where a mesh winds around a point
+/// more than once, as often counts the point. Far slower than contacts. Throws InputError for poses as intersects().
 RAYCONTACT_API double overlap_volume(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b);
 
 } // namespace raycontact

@@ -32,11 +32,11 @@ struct RayHit {
 
 /// The closest triangle that a ray meets within `max` metres of its origin; of equally close ones the lowest. Both
 /// sides of a face count, and so do its edges and a face on which the origin lies; one that is seen exactly edge-on
-/// does not. Watertight: the ray is placed in the body frame, rounded to double, and from there on exact predicates
-/// decide which triangles it meets (Shewchuk 1997), so none slips between two that share an edge. The distance is
-/// rounded. direction: of any length. Throws InputError for a pose that is not finite and rigid to 1e-4, for a pose or
-/// an origin beyond 1e30 m or not finite, for a direction that is zero or not finite, and for a `max` that is negative
-/// or not a number.
+/// does not. Watertight: the ray is placed in the body frame, rounded to double, and from there on it is decided
+/// exactly which triangles it meets (Shewchuk 1997) and which first, so none slips between two that share an edge. The
+/// distance is rounded. direction: of any length. Throws InputError for a pose that is not finite and rigid to 1e-4,
+/// for a pose or an origin beyond 1e30 m or not finite, for a direction that is zero or not finite, and for a `max`
+/// that is negative or not a number.
 RAYCONTACT_API std::optional<RayHit> raycast(const Shape& shape, const Pose& pose, const Vec3& origin,
                                              const Vec3& direction, double max = any_distance);
 
@@ -51,16 +51,17 @@ struct ClosestPoint {
     double distance = 0;                         ///< metres; contains() tells on which side of a closed mesh
 };
 
-/// The closest point of a mesh's surface, if it is within `max` metres. In double: right to some 1e-15 of the size of
-/// the mesh and its distance from the origins. Of a triangle that is a million times longer than wide only the edges
-/// are looked at. Throws InputError for pose, point and `max` as raycast().
+/// The closest point of a mesh's surface, if it is within `max` metres. The point is placed in the body frame, rounded
+/// to double; from there on it is decided exactly which triangle is the closest. Point and distance are rounded: right
+/// to some 1e-15 of the size of the mesh and its distance from the origins. Throws InputError for pose, point and `max`
+/// as raycast().
 RAYCONTACT_API std::optional<ClosestPoint> closest_point(const Shape& shape, const Pose& pose, const Vec3& point,
                                                          double max = any_distance);
 
 /// The least distance of two meshes, and where it is.
 struct Distance {
     double distance = 0; ///< metres; 0 exactly where intersects() is true
-    Vec3 point_a;        ///< on the surface of a, world frame; where they intersect, one that both share
+    Vec3 point_a;        ///< on the surface of a, world frame; where they intersect, one that both share, to rounding
     Vec3 point_b;        ///< likewise on that of b
     /// On which point_a lies, index in the file. no_triangle for a mesh inside of which the other lies.
     std::uint32_t triangle_a = Shape::no_triangle;

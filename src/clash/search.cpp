@@ -120,12 +120,34 @@ std::optional<AxisBox> axis_box(const std::optional<Box>& box) {
     return box ? std::optional(AxisBox{box->low, box->high}) : std::nullopt;
 }
 
+/// Points of contacts are those of float32, and what is opposite may lie beside its face: of the surfaces those next to
+/// them count. One of the two lies in the other part, or some other point does.
+void set_points(Clash& clash, const Part& a, const Part& b) {
+    if (clash.contacts == 0) return; // it is a point that both share
+    const bool a_first = clash.point == clash.point_a;
+    const auto on = [](const Part& part, const Vec3& point) {
+        const auto closest = closest_point(*part.shape, part.pose, point);
+        return closest ? closest->point : point;
+    };
+    clash.point_a = on(a, clash.point_a);
+    clash.point_b = on(b, clash.point_b);
+    const auto take = [&](const Vec3& point, const Part& other) {
+        if (!contains(*other.shape, other.pose, point)) return false;
+        clash.point = point;
+        return true;
+    };
+    if (a_first ? take(clash.point_a, b) || take(clash.point_b, a) : take(clash.point_b, a) || take(clash.point_a, b))
+        return;
+    clash.point = common_point(*a.shape, a.pose, *b.shape, b.pose).value_or(clash.point);
+}
+
 /// Of two parts that share a point.
 void set_kind(Answer& answer, const Part& a, const Part& b, const ClashOptions& options) {
     Clash& clash = *answer.clash;
     clash.open_a = !a.shape->report().closed;
     clash.open_b = !b.shape->report().closed;
     if (clash.kind == ClashKind::nearby || clash.distance > 0) return;
+    set_points(clash, a, b);
     const bool solid = a.shape->has_inside() && b.shape->has_inside();
     const auto touch = [&] {
         clash.kind = ClashKind::touching;
@@ -202,6 +224,7 @@ std::vector<Answer> search(const std::vector<Part>& parts, std::span<const PartP
                            Executor& executor, const std::function<void(std::size_t)>& progress) {
     Settings settings;
     settings.method = Method::standard;
+    settings.direction = Direction::refined; // the depths of threads and tubes obey their bound
     settings.execution.devices = "cpu";
     settings.execution.threads = options.threads;
     Scene scene(settings);
