@@ -17,14 +17,16 @@ constexpr double few_roundings = 1e-14, squared_roundings = few_roundings * few_
 
 // The sign of (p - a) . (b - a): 1 where p is past a on the way to b.
 int is_past(const Vec3& p, const Vec3& a, const Vec3& b) {
+    if (p == a) return 0;
     const Vec3 off = p - a, along = b - a;
     const double value = dot(off, along);
     if (value * value > squared_roundings * dot(off, off) * dot(along, along)) return value > 0 ? 1 : -1;
     return dot(ExactVec3(p) - a, ExactVec3(b) - a).sign();
 }
 
-// -1 where p, seen along the normal of a, b, c, is beyond the edge from a to b.
+// -1 where p, seen along the normal of a, b, c, is beyond the edge from a to b; 0 where it is on it.
 int is_within(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& c) {
+    if (p == a || p == b) return 0;
     const Vec3 off = p - a, along = b - a, other = c - a;
     const double value = dot(cross(along, other), cross(along, off)), size2 = dot(along, along);
     if (value * value > squared_roundings * size2 * size2 * dot(other, other) * dot(off, off))
@@ -52,7 +54,7 @@ NearestFeature::NearestFeature(const Vec3& sought, const NumberedTriangle& trian
     const auto& t = triangle.corners;
     std::array<bool, 3> beyond{true, true, true};
     if (has_area(t)) {
-        for (std::size_t k = 0; k < 3; ++k) beyond[k] = is_within(sought, t[k], t[(k + 1) % 3], t[(k + 2) % 3]) < 0;
+        for (std::size_t k = 0; k < 3; ++k) beyond[k] = is_within(sought, t[k], t[(k + 1) % 3], t[(k + 2) % 3]) <= 0;
         if (!beyond[0] && !beyond[1] && !beyond[2]) {
             set_face();
             return;
