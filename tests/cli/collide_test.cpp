@@ -97,17 +97,32 @@ TEST_F(Collide, TwoCorners) {
 TEST_F(Collide, EdgesSeeWhatNoVertexSees) {
     json inside{{"a", "cube.obj"}, {"b", "cube.obj"}, {"pose_b", translation(0.1, 0, 0.2)}, {"scale_b", 0.1}};
     json stacked{{"a", "cube.obj"}, {"b", "cube.obj"}, {"pose_b", translation(0, 0, 0.99)}};
+    // By 45 degrees: no corner lies over the other cube.
+    const double turn = std::sqrt(0.5);
+    json turned{{"a", "cube.obj"},
+                {"b", "cube.obj"},
+                {"pose_b", {turn, -turn, 0, 0, turn, turn, 0, 0, 0, 0, 1, 0.99, 0, 0, 0, 1}}};
     json touching{{"a", "cube.obj"}, {"b", "cube.obj"}, {"pose_b", translation(0, 0, 1)}};
-    const json pairs = json::array({inside, stacked, touching});
+    const json pairs = json::array({inside, stacked, turned, touching});
     const auto result = run(pairs);
     EXPECT_EQ(result.err, "");
     const auto lines = json_lines(result.out);
-    ASSERT_EQ(lines.size(), 3u);
+    ASSERT_EQ(lines.size(), 4u);
     ASSERT_EQ(lines[0]["contacts"].size(), 1u);
     EXPECT_EQ(lines[0]["contacts"][0]["feature"], "inside");
     EXPECT_EQ(lines[0]["contacts"][0]["vertex_body"], "b");
-    EXPECT_GE(lines[1]["contacts"].size(), 4u);
+    // The crossings have the lower corners of b inside of a, flush as they are.
+    EXPECT_EQ(lines[1]["contacts"].size(), 4u);
     for (const json& contact : lines[1]["contacts"]) {
+        EXPECT_EQ(contact["feature"], "vertex");
+        EXPECT_EQ(contact["vertex_body"], "b");
+        EXPECT_NEAR(std::fabs(contact["point"][0].get<double>()), 0.5, 1e-6);
+        EXPECT_NEAR(std::fabs(contact["point"][1].get<double>()), 0.5, 1e-6);
+        EXPECT_NEAR(contact["depth"].get<double>(), 0.01, 1e-6);
+        expect_vector(contact["normal"], 0, 0, 1);
+    }
+    EXPECT_GE(lines[2]["contacts"].size(), 4u);
+    for (const json& contact : lines[2]["contacts"]) {
         EXPECT_EQ(contact["feature"], "edges");
         EXPECT_EQ(contact["key"].get<std::string>().size(), 16u);
         EXPECT_TRUE(contact.contains("edge_a") && contact.contains("edge_b")) << contact;
@@ -116,8 +131,10 @@ TEST_F(Collide, EdgesSeeWhatNoVertexSees) {
         EXPECT_NEAR(contact["depth"].get<double>(), 0.01, 1e-6);
         expect_vector(contact["normal"], 0, 0, 1);
     }
-    EXPECT_EQ(lines[2]["colliding"], false);
-    EXPECT_EQ(json_lines(run_vertices(pairs).out)[1]["colliding"], false);
+    EXPECT_EQ(lines[3]["colliding"], false);
+    const auto by_vertices = json_lines(run_vertices(pairs).out);
+    EXPECT_EQ(by_vertices[1]["colliding"], false);
+    EXPECT_EQ(by_vertices[2]["colliding"], false);
 }
 
 TEST_F(Collide, SwappedPairTurnsTheNormals) {
