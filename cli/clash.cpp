@@ -276,6 +276,8 @@ void write(std::optional<output::OutFile>& file, const std::string& bytes) {
 }
 
 void run_clash(const Options& options) {
+    if (!options.bcf.empty() && options.unit.empty())
+        throw InputError("--bcf: has metres, and nothing says which unit the files have; give --unit m, mm, cm or in");
     auto out = claim(options, "--out", options.out, ".glb");
     auto csv = claim(options, "--csv", options.csv, ".csv");
     auto bcf = claim(options, "--bcf", options.bcf, ".bcfzip");
@@ -289,7 +291,7 @@ void run_clash(const Options& options) {
     }
     const std::vector<Clash>& clashes = result.report.clashes;
     if (out) write(out, clash::coloured_glb(result.parts, clashes));
-    if (csv) write(csv, clash::csv(result.parts, clashes));
+    if (csv) write(csv, clash::csv(result.parts, clashes, options.unit));
     if (bcf) {
         const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
         write(bcf, clash::bcf_zip(result.parts, clashes,
@@ -349,7 +351,7 @@ void add_clash(CLI::App& app) {
     add_out(*command, "--out", options->out, "write all parts there as .glb, those that clash in red")
         ->type_name("FILE.glb");
     add_out(*command, "--csv", options->csv, "write the clashes there as a table")->type_name("FILE.csv");
-    add_out(*command, "--bcf", options->bcf, "write the clashes there as topics of BIM Collaboration Format 2.1")
+    add_out(*command, "--bcf", options->bcf, "write the clashes there as topics of BIM Collaboration Format 2.1; needs --unit")
         ->type_name("FILE.bcfzip");
     command->add_flag("--json", options->json, "print one JSON line a clash on stdout");
     command->add_flag("--check", options->check, "exit status 3 where parts clash");

@@ -21,21 +21,27 @@ std::string time_left(double seconds, double done, double total) {
 
 } // namespace
 
-Progress::Progress(std::string title, std::uint32_t total, std::string unit)
-    : title_(std::move(title)), unit_(std::move(unit)), total_(total), terminal_(isatty(STDERR_FILENO) != 0) {}
+Progress::Progress(std::string title, std::uint32_t total, std::string unit, Elsewhere elsewhere)
+    : title_(std::move(title)), unit_(std::move(unit)), total_(total), terminal_(isatty(STDERR_FILENO) != 0),
+      lines_(!terminal_ && elsewhere == Elsewhere::lines) {
+    if (lines_ && total_ > 0) std::cerr << title_ << ": begins" << std::endl;
+}
 
 void Progress::show(std::uint32_t now) {
-    if (!terminal_ || total_ == 0 || now == 0) return;
+    if (!(terminal_ || lines_) || total_ == 0 || now == 0) return;
     const auto percent = static_cast<std::uint32_t>(std::uint64_t{100} * now / total_);
-    if (percent == shown_ && now != 1) return;
+    if (lines_ ? percent / 10 == shown_ / 10 : percent == shown_ && now != 1) return;
     shown_ = percent;
     const std::uint32_t full = cells * percent / 100;
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - start_;
     const std::string counted = unit_.empty() ? "" : fmt::format(" {} {} of {},", unit_, now, total_);
-    // The end of a longer line before this one is wiped out.
-    std::cerr << fmt::format("\r{} [{:=<{}}{: <{}}] {:3}%{} {}\x1b[K", title_, "", full, "", cells - full, percent,
-                             counted, time_left(took.count(), now, total_))
-              << std::flush;
+    const std::string left = time_left(took.count(), now, total_);
+    if (lines_)
+        std::cerr << fmt::format("{}: {}%,{} {}\n", title_, percent, counted, left);
+    else // the end of a longer line before this one is wiped out
+        std::cerr << fmt::format("\r{} [{:=<{}}{: <{}}] {:3}%{} {}\x1b[K", title_, "", full, "", cells - full, percent,
+                                 counted, left);
+    std::cerr << std::flush;
 }
 
 void Progress::done() {

@@ -65,7 +65,7 @@ void reproduce(const ReproduceCommand& given) {
     std::optional<Progress> bar;
     options.begin = [&](const std::string& name, std::uint32_t total) {
         if (total == 0) std::cerr << name << ": kept from an earlier run\n";
-        bar.emplace(name, total, "");
+        bar.emplace(name, total, "", Progress::Elsewhere::lines);
     };
     options.progress = [&](std::uint32_t done) { bar->show(done); };
     options.end = [&] { bar->done(); };

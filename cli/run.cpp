@@ -229,6 +229,28 @@ void warn_if_open(const SceneDescription& scene, const BodyStart& body) {
     std::cerr << fmt::format("{}: stands still and is {}\n", shape.name(), what);
 }
 
+/// A file names no unit. Bodies that are taken for far larger than they are fall a short way of their size in the run.
+void warn_if_all_fell(const Simulation& scene) {
+    const SceneDescription& description = scene.description();
+    const std::vector<StepRow>& rows = scene.log().rows;
+    if (std::ranges::any_of(rows, [](const StepRow& row) { return row.contacts > 0; })) return;
+    const raycontact::Vec3 g = description.gravity;
+    const double seconds = static_cast<double>(rows.size()) * description.dt;
+    // What rests on an endless plane has no contacts that are counted.
+    if (rows.back().median_speed < 0.9 * std::hypot(g.x, g.y, g.z) * seconds) return;
+    double size = 0;
+    for (const BodyStart& body : description.bodies) {
+        if (!(body.density > 0)) continue;
+        const raycontact::Shape& shape = *description.shapes[body.shape].shape;
+        const raycontact::Vec3 low = shape.box_min(), high = shape.box_max();
+        size = std::max({size, high.x - low.x, high.y - low.y, high.z - low.z});
+    }
+    std::cerr << fmt::format("in {:.3g} s no body met anything, all just fell: a mesh is {:.3g} m long, and the way to "
+                             "the ground grows with it. Files are read in metres; where theirs is another unit, as "
+                             "millimetres, give --size: the longest edge in metres. Else give more --steps\n",
+                             seconds, size);
+}
+
 void run(const RunOptions& options) {
     check_common_options(options.settings);
     Outputs outputs(options);
@@ -262,6 +284,7 @@ void run(const RunOptions& options) {
     const std::chrono::duration<double, std::milli> wall = std::chrono::steady_clock::now() - start;
 
     print_warnings(scene.log().rows);
+    if (!options.scene.meshes.empty()) warn_if_all_fell(scene);
     const Json result = summary(options, scene, wall.count());
     // File names are in it, which need not be text.
     const std::string text = result.dump(-1, ' ', false, Json::error_handler_t::replace);

@@ -21,7 +21,7 @@ namespace raycontact::output {
 
 namespace {
 
-const char* const longest_ending = ".part.part"; // a recording's last draft
+const char* const longest_ending = ".last.part"; // a recording's last draft
 
 fs::path with(const fs::path& path, const std::string& ending) {
     fs::path result = path;

@@ -37,6 +37,12 @@ const Info& checked(const Info& info) {
     return info;
 }
 
+// Of NAME, and of a NAME.part that takes its name later.
+std::filesystem::path last_draft(std::filesystem::path file) {
+    if (file.extension() == ".part") file.replace_extension();
+    return file += ".last.part";
+}
+
 Bytes word(std::uint64_t value) {
     Bytes bytes;
     put(bytes, static_cast<std::uint32_t>(value));
@@ -199,8 +205,7 @@ void Writer::animate() {
     const std::uint64_t length = end_ - data_;
     const std::uint64_t whole = start.size() + glb::chunk_header_bytes + length;
     if (whole > most_bytes) return;
-    std::filesystem::path part = file_.path();
-    part += ".part";
+    const std::filesystem::path part = last_draft(file_.path());
     try {
         File to = File::create(part);
         to.write(0, start);

@@ -390,13 +390,18 @@ TEST_F(Clash, Table) {
     write_cube("a.obj", 0);
     write_cube("b, \"2\".obj", 0.75);
     write_cube("touch.obj", -1);
-    ASSERT_EQ(run({"a.obj", "b, \"2\".obj", "touch.obj", "--csv", "out.csv", "--volume"}).status, 0);
+    ASSERT_EQ(run({"a.obj", "b, \"2\".obj", "touch.obj", "--csv", "out.csv", "--volume", "--unit", "mm"}).status, 0);
     std::ifstream file(folder_.path() / "out.csv", std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(file), {}};
     EXPECT_TRUE(text.starts_with("a,b,kind,depth,distance,x,y,z,contacts,open,low_x,")) << text;
     EXPECT_NE(text.find("\r\na.obj,\"b, \"\"2\"\".obj\",overlapping,0.249"), std::string::npos) << text;
-    EXPECT_NE(text.find(",0.25\r\na.obj,touch.obj,touching,0,0,-0.5,"), std::string::npos) << text;
-    EXPECT_TRUE(text.ends_with(",0,,,,,,,,\r\n")) << text;
+    EXPECT_NE(text.find(",volume,unit\r\n"), std::string::npos) << text;
+    EXPECT_NE(text.find(",0.25,mm\r\na.obj,touch.obj,touching,0,0,-0.5,"), std::string::npos) << text;
+    EXPECT_TRUE(text.ends_with(",0,,,,,,,,,mm\r\n")) << text;
+    ASSERT_EQ(run({"a.obj", "touch.obj", "--csv", "out.csv"}).status, 0);
+    std::ifstream untold(folder_.path() / "out.csv", std::ios::binary);
+    const std::string without{std::istreambuf_iterator<char>(untold), {}};
+    EXPECT_TRUE(without.ends_with(",0,,,,,,,,,\r\n")) << without;
 }
 
 TEST_F(Clash, SameForEveryNumberOfThreads) {
@@ -424,7 +429,9 @@ TEST_F(Clash, BadInputIsRefused) {
     write_cube("b.obj", 0);
     expect_refused(run({"a.obj", "b.obj", "--out", "b.obj"}), "ends in .glb");
     expect_refused(run({"a.obj", "b.obj", "--csv", "b.txt"}), "ends in .csv");
-    expect_refused(run({"a.obj", "b.obj", "--bcf", "b.zip"}), "ends in .bcfzip");
+    expect_refused(run({"a.obj", "b.obj", "--bcf", "b.zip", "--unit", "m"}), "ends in .bcfzip");
+    expect_refused(run({"a.obj", "b.obj", "--bcf", "b.bcfzip"}), "give --unit m, mm, cm or in");
+    EXPECT_FALSE(std::filesystem::exists(folder_.path() / "b.bcfzip"));
     expect_refused(run({"a.obj", "b.obj", "--clearance", "-1"}), "--clearance");
     expect_refused(run({"a.obj", "b.obj", "--tolerance", "-1"}), "--tolerance");
     expect_refused(run({"a.obj", "b.obj", "--unit", "ft"}), "--unit");

@@ -67,7 +67,7 @@ def test_topics_are_valid_and_cameras_look_at_their_points(tmp_path, unit, metre
         assert np.allclose(way / np.linalg.norm(way), direction, atol=1e-6) and 0.1 < np.linalg.norm(way) < 10
         assert np.linalg.norm(direction) == pytest.approx(1) and direction @ up == pytest.approx(0, abs=1e-12)
 
-    again = run(tmp_path, *NAMES, "--bcf", "again.bcfzip", "--clearance", str(0.2 / metres))
+    again = run(tmp_path, *NAMES, "--bcf", "again.bcfzip", "--unit", unit, "--clearance", str(0.2 / metres))
     assert again.returncode == 0
     with zipfile.ZipFile(tmp_path / "again.bcfzip") as archive:
         assert set(archive.namelist()) == set(texts), "the same topics from run to run"
@@ -77,7 +77,7 @@ def test_names_that_xml_does_not_have_are_replaced(tmp_path):
     write(tmp_path, "a\x01b.obj", np.zeros(3))
     name = os.fsdecode(b"\xff\xc0\x80.obj")
     write(tmp_path, name, np.array([0.5, 0, 0]))
-    assert run(tmp_path, "a\x01b.obj", name, "--bcf", "out.bcfzip").returncode == 0
+    assert run(tmp_path, "a\x01b.obj", name, "--bcf", "out.bcfzip", "--unit", "m").returncode == 0
     with zipfile.ZipFile(tmp_path / "out.bcfzip") as archive:
         (markup,) = [archive.read(entry) for entry in archive.namelist() if entry.endswith(".bcf")]
     title = etree.fromstring(markup).findtext("Topic/Title")

@@ -21,7 +21,25 @@ TEST(RoundTrip, KeepsEveryBit) {
     Reader reader(file.path());
     EXPECT_EQ(difference(sample, reader, 47), "");
     EXPECT_EQ(reader.hash(), sample.hash);
-    EXPECT_FALSE(std::filesystem::exists(file.path().string() + ".part"));
+    EXPECT_FALSE(std::filesystem::exists(file.path().string() + ".last.part"));
+}
+
+// Of x.glb and of an x.glb.part that becomes it the last draft has the same name, which a folder takes here.
+TEST(RoundTrip, TheLastDraftHasOneName) {
+    const Sample sample = make_sample(3);
+    for (const char* ending : {"", ".part"}) {
+        const TemporaryFile file;
+        const std::filesystem::path named = file.path().string() + ending, draft = file.path().string() + ".last.part";
+        std::filesystem::create_directory(draft);
+        try {
+            record(sample, named, true);
+            ADD_FAILURE() << "the folder is in the way";
+        } catch (const InputError& error) {
+            EXPECT_TRUE(std::string(error.what()).starts_with(draft.string() + ": ")) << error.what();
+        }
+        std::filesystem::remove(draft);
+        std::filesystem::remove(named);
+    }
 }
 
 TEST(RoundTrip, WithoutAnEndThereIsNoHash) {

@@ -195,7 +195,7 @@ TemporaryFile::TemporaryFile() {
 TemporaryFile::~TemporaryFile() {
     std::error_code ignored;
     std::filesystem::remove(path_, ignored);
-    std::filesystem::remove(path_.string() + ".part", ignored);
+    std::filesystem::remove(path_.string() + ".last.part", ignored);
 }
 
 std::vector<unsigned char> bytes_of(const std::filesystem::path& file) {

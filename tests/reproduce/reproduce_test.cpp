@@ -72,6 +72,10 @@ protected:
 TEST_F(Reproduce, AllAfterOneRepeatsNothingAndShowsEverything) {
     const auto one = run({"fig9", "--out", "out"});
     ASSERT_EQ(one.status, 0) << one.err;
+    // In a log there is no bar, but lines.
+    EXPECT_TRUE(one.err.starts_with("fig9: begins\nfig9: ")) << one.err;
+    EXPECT_NE(one.err.find("\nfig9: 100%, 0 s left\n"), std::string::npos) << one.err;
+    EXPECT_EQ(one.err.find('\r'), std::string::npos) << one.err;
     const fs::path out = folder_.path() / "out";
     EXPECT_NE(text_of(out / "report.html").find("Not run yet: table1"), std::string::npos);
     const auto before = times_of(out / "cache");
