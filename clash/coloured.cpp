@@ -56,7 +56,9 @@ public:
         nodes_.push_back({{"name", name},
                           {"translation", {clash.point.x, clash.point.y, clash.point.z}},
                           {"extras",
-                           {{"kind", to_string(clash.kind)},
+                           {{"a", clash.a},
+                            {"b", clash.b},
+                            {"kind", to_string(clash.kind)},
                             {"depth", clash.depth ? Json(*clash.depth) : Json()},
                             {"contacts", clash.contacts}}}});
     }

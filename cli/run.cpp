@@ -245,7 +245,7 @@ void warn_if_all_fell(const Simulation& scene) {
         const raycontact::Vec3 low = shape.box_min(), high = shape.box_max();
         size = std::max({size, high.x - low.x, high.y - low.y, high.z - low.z});
     }
-    std::cerr << fmt::format("in {:.3g} s no body met anything, all just fell: a mesh is {:.3g} m long, and the way to "
+    std::cerr << fmt::format("in {:.3g} s no body met anything, all just fell: a mesh is {:.4g} m long, and the way to "
                              "the ground grows with it. Files are read in metres; where theirs is another unit, as "
                              "millimetres, give --size: the longest edge in metres. Else give more --steps\n",
                              seconds, size);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace raycontact::view {
 
@@ -27,12 +28,13 @@ std::vector<std::uint32_t> reduced(const std::vector<std::uint32_t>& triangles, 
 
 } // namespace
 
-Levels make_levels(const Shape& shape, std::uint32_t most) {
+Levels make_levels(std::span<const Vec3> vertices, std::span<const std::array<std::uint32_t, 3>> triangles,
+                   std::uint32_t most) {
     std::vector<float> positions;
-    for (const Vec3& v : shape.vertices())
+    for (const Vec3& v : vertices)
         positions.insert(positions.end(), {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)});
     std::vector<std::uint32_t> level;
-    for (const auto& t : shape.triangles()) level.insert(level.end(), t.begin(), t.end());
+    for (const auto& t : triangles) level.insert(level.end(), t.begin(), t.end());
     if (level.size() > 3 * std::size_t{most}) level = reduced(level, positions, most);
 
     Levels levels;
@@ -47,17 +49,21 @@ Levels make_levels(const Shape& shape, std::uint32_t most) {
 
     // Only vertices in use, in the order in which the finest level names them.
     std::vector<std::uint32_t> place(positions.size() / 3, UINT32_MAX), used;
-    for (auto& triangles : levels.triangles)
-        for (std::uint32_t& v : triangles) {
+    for (auto& one : levels.triangles)
+        for (std::uint32_t& v : one) {
             if (place[v] == UINT32_MAX) {
                 place[v] = static_cast<std::uint32_t>(used.size());
                 used.push_back(v);
             }
             v = place[v];
         }
-    const Vec3 low = shape.box_min(), high = shape.box_max();
-    levels.low = {static_cast<float>(low.x), static_cast<float>(low.y), static_cast<float>(low.z)};
-    levels.high = {static_cast<float>(high.x), static_cast<float>(high.y), static_cast<float>(high.z)};
+    levels.low.fill(std::numeric_limits<float>::infinity());
+    levels.high.fill(-std::numeric_limits<float>::infinity());
+    for (const std::uint32_t v : used)
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            levels.low[axis] = std::min(levels.low[axis], positions[3 * v + axis]);
+            levels.high[axis] = std::max(levels.high[axis], positions[3 * v + axis]);
+        }
     for (const std::uint32_t v : used) {
         std::array<std::uint16_t, 3> vertex{};
         for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -17,6 +17,33 @@ struct Kept {
     std::array<double, 4> turn{0, 0, 0, 1};
 };
 
+Kept kept_of(const Pose& pose) {
+    return {{pose.translation.x, pose.translation.y, pose.translation.z}, recording::quaternion(pose.rotation)};
+}
+
+void enclose(const Kept& kept, Motion& motion) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        motion.low[axis] = std::min(motion.low[axis], kept.place[axis]);
+        motion.high[axis] = std::max(motion.high[axis], kept.place[axis]);
+    }
+}
+
+/// Of all bodies and kept steps, body by body.
+void write_numbers(const std::vector<Kept>& kept, Motion& motion) {
+    if (!(motion.low[0] <= motion.high[0])) motion.low = motion.high = {};
+    motion.numbers.resize(kept.size() * numbers_a_pose);
+    for (std::size_t b = 0; b < motion.bodies; ++b)
+        for (std::size_t i = 0; i < motion.kept; ++i) {
+            const Kept& from = kept[b * motion.kept + i];
+            std::uint16_t* const to = &motion.numbers[b * numbers_a_pose * motion.kept + i];
+            for (std::size_t n = 0; n < numbers_a_pose; ++n) {
+                const double extent = n < 3 ? motion.high[n] - motion.low[n] : 2;
+                const double above = n < 3 ? from.place[n] - motion.low[n] : from.turn[n - 3] + 1;
+                to[n * motion.kept] = quantised(extent > 0 ? above / extent : 0);
+            }
+        }
+}
+
 } // namespace
 
 std::uint32_t stride_for(std::uint32_t bodies, std::uint32_t steps, std::uint64_t poses) {
@@ -37,9 +64,8 @@ Motion read_motion(recording::Reader& reader, std::uint32_t stride,
         motion.moves.push_back(std::min(body.end_step, reader.steps()) - body.first_step < 2);
     std::vector<Pose> poses, first(bodies.size());
     std::vector<Pair> pairs;
-    constexpr double far = std::numeric_limits<double>::infinity();
-    motion.low.fill(far);
-    motion.high.fill(-far);
+    motion.low.fill(std::numeric_limits<double>::infinity());
+    motion.high.fill(-std::numeric_limits<double>::infinity());
     for (std::uint32_t i = 0; i < reader.steps(); ++i) {
         // Every step: a body may come and go between two that are kept, and reading in order is cheap.
         reader.read_step(i, poses, pairs);
@@ -50,8 +76,7 @@ Motion read_motion(recording::Reader& reader, std::uint32_t stride,
             if (pose != first[b]) motion.moves[b] = true;
             if (i % stride != 0 && bodies[b].first_step != i) continue;
             const std::uint32_t at = i / stride;
-            Kept now{{pose.translation.x, pose.translation.y, pose.translation.z},
-                     recording::quaternion(pose.rotation)};
+            Kept now = kept_of(pose);
             Kept* const own = &kept[b * motion.kept];
             if (bodies[b].first_step == i) std::fill(own, own + at, now);
             const auto& last = own[at == 0 ? 0 : at - 1].turn; // both signs are the same turn: take the nearer one
@@ -60,10 +85,7 @@ Motion read_motion(recording::Reader& reader, std::uint32_t stride,
             if (alike < 0)
                 for (double& part : now.turn) part = -part;
             own[at] = now;
-            for (std::size_t axis = 0; axis < 3; ++axis) {
-                motion.low[axis] = std::min(motion.low[axis], now.place[axis]);
-                motion.high[axis] = std::max(motion.high[axis], now.place[axis]);
-            }
+            enclose(now, motion);
         }
         if (progress) progress(i + 1);
     }
@@ -73,18 +95,20 @@ Motion read_motion(recording::Reader& reader, std::uint32_t stride,
         const auto last = kept.begin() + static_cast<std::ptrdiff_t>(b * motion.kept + (end - 1) / stride);
         std::fill(last, kept.begin() + static_cast<std::ptrdiff_t>((b + 1) * motion.kept), *last);
     }
-    if (!(motion.low[0] <= motion.high[0])) motion.low = motion.high = {};
-    motion.numbers.resize(kept.size() * numbers_a_pose);
-    for (std::size_t b = 0; b < bodies.size(); ++b)
-        for (std::size_t i = 0; i < motion.kept; ++i) {
-            const Kept& from = kept[b * motion.kept + i];
-            std::uint16_t* const to = &motion.numbers[b * numbers_a_pose * motion.kept + i];
-            for (std::size_t n = 0; n < numbers_a_pose; ++n) {
-                const double extent = n < 3 ? motion.high[n] - motion.low[n] : 2;
-                const double above = n < 3 ? from.place[n] - motion.low[n] : from.turn[n - 3] + 1;
-                to[n * motion.kept] = quantised(extent > 0 ? above / extent : 0);
-            }
-        }
+    write_numbers(kept, motion);
+    return motion;
+}
+
+Motion standing(std::span<const Pose> poses) {
+    Motion motion;
+    motion.kept = 1;
+    motion.bodies = static_cast<std::uint32_t>(poses.size());
+    motion.moves.assign(poses.size(), false);
+    motion.low.fill(std::numeric_limits<double>::infinity());
+    motion.high.fill(-std::numeric_limits<double>::infinity());
+    std::vector<Kept> kept;
+    for (const Pose& pose : poses) enclose(kept.emplace_back(kept_of(pose)), motion);
+    write_numbers(kept, motion);
     return motion;
 }
 

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 namespace raycontact::view {
@@ -27,6 +28,8 @@ std::uint32_t stride_for(std::uint32_t bodies, std::uint32_t steps, std::uint64_
 /// Where a body is not there, its pose is that of the nearest step in which it is. Throws InputError for a damaged
 /// file.
 Motion read_motion(recording::Reader& reader, std::uint32_t stride, const std::function<void(std::uint32_t)>& progress);
+/// Of bodies that stand still, in one step.
+Motion standing(std::span<const Pose> poses);
 /// What the page adds up again: each number minus that of the kept step before.
 std::vector<std::uint16_t> differences(const Motion& motion);
 

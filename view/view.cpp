@@ -15,6 +15,9 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <array>
+#include <map>
+#include <span>
 #include <stdexcept>
 
 namespace raycontact::view {
@@ -28,8 +31,14 @@ std::string dump(const Json& json) {
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-Json shape_json(const Shape& shape, std::uint32_t most, std::uint64_t& bytes) {
-    const Levels levels = make_levels(shape, most);
+struct DrawnMesh {
+    std::string name;
+    std::span<const Vec3> vertices;
+    std::span<const std::array<std::uint32_t, 3>> triangles;
+};
+
+Json shape_json(const DrawnMesh& mesh, std::uint32_t most, std::uint64_t& bytes) {
+    const Levels levels = make_levels(mesh.vertices, mesh.triangles, most);
     std::vector<std::uint16_t> vertices;
     for (std::size_t axis = 0; axis < 3; ++axis)
         for (const auto& vertex : levels.vertices) vertices.push_back(vertex[axis]);
@@ -39,8 +48,8 @@ Json shape_json(const Shape& shape, std::uint32_t most, std::uint64_t& bytes) {
         counts.push_back(level.size());
         for (const std::uint32_t v : level) recording::put(triangles, v);
     }
-    Json json{{"name", shape.name()},
-              {"triangles", shape.triangles().size()},
+    Json json{{"name", mesh.name},
+              {"triangles", mesh.triangles.size()},
               {"low", levels.low},
               {"high", levels.high},
               {"vertexCount", levels.vertices.size()},
@@ -51,14 +60,14 @@ Json shape_json(const Shape& shape, std::uint32_t most, std::uint64_t& bytes) {
     return json;
 }
 
-Json shapes_json(const recording::Reader& reader, std::uint32_t triangles, std::uint64_t& bytes) {
+Json shapes_json(const std::vector<DrawnMesh>& meshes, std::uint32_t triangles, std::uint64_t& bytes) {
     std::uint64_t all = 0;
-    for (const auto& shape : reader.shapes()) all += shape->triangles().size();
+    for (const DrawnMesh& mesh : meshes) all += mesh.triangles.size();
     Json json = Json::array();
-    for (const auto& shape : reader.shapes()) {
-        const std::uint64_t own = shape->triangles().size();
+    for (const DrawnMesh& mesh : meshes) {
+        const std::uint64_t own = mesh.triangles.size();
         const std::uint64_t share = all > triangles ? std::max<std::uint64_t>(own * triangles / all, coarsest) : own;
-        json.push_back(shape_json(*shape, static_cast<std::uint32_t>(share), bytes));
+        json.push_back(shape_json(mesh, static_cast<std::uint32_t>(share), bytes));
     }
     return json;
 }
@@ -131,6 +140,16 @@ Json layers_json(const Found& found, View& view) {
     return json;
 }
 
+Json motion_json(const Motion& motion, View& view) {
+    Json json{{"low", motion.low},
+              {"high", motion.high},
+              {"kept", motion.kept},
+              {"stride", motion.stride},
+              {"numbers", blob(split_bytes(differences(motion)))}};
+    view.motion_bytes = dump(json).size();
+    return json;
+}
+
 std::string_view file(std::string_view name) {
     for (const PageFile& page_file : page_files)
         if (page_file.name == name) return page_file.text;
@@ -162,7 +181,7 @@ std::string make_page(const std::string& title, std::string_view json) {
     page += file("problem.js");
     page += "(async()=>{\n";
     for (const char* part :
-         {"decode.js", "camera.js", "shaders.js", "bodies.js", "layers.js", "controls.js", "main.js"})
+         {"decode.js", "camera.js", "shaders.js", "bodies.js", "layers.js", "clashes.js", "controls.js", "main.js"})
         page += file(part);
     page += "})().catch(fail);\n</script>\n</body>\n</html>\n";
     return page;
@@ -180,12 +199,9 @@ View make_view(recording::Reader& reader, const ViewOptions& options) {
     const recording::Info& info = reader.info();
     const Motion motion = read_motion(reader, std::max(options.stride, 1u), options.progress);
     view.standing = static_cast<std::uint32_t>(std::count(motion.moves.begin(), motion.moves.end(), false));
-    Json motion_json{{"low", motion.low},
-                     {"high", motion.high},
-                     {"kept", motion.kept},
-                     {"stride", motion.stride},
-                     {"numbers", blob(split_bytes(differences(motion)))}};
-    view.motion_bytes = dump(motion_json).size();
+    const Json poses = motion_json(motion, view);
+    std::vector<DrawnMesh> meshes;
+    for (const auto& shape : reader.shapes()) meshes.push_back({shape->name(), shape->vertices(), shape->triangles()});
     Json json{{"scene", info.scene},
               {"seed", info.seed},
               {"dt", info.dt},
@@ -195,11 +211,62 @@ View make_view(recording::Reader& reader, const ViewOptions& options) {
               {"meshSource", info.mesh_source},
               {"bodies", bodies_json(reader, motion.moves)},
               {"standing", view.standing},
-              {"shapes", shapes_json(reader, options.triangles, view.shape_bytes)},
-              {"motion", motion_json},
+              {"shapes", shapes_json(meshes, options.triangles, view.shape_bytes)},
+              {"motion", poses},
               {"layers", nullptr}};
     if (options.layer_every > 0) json["layers"] = layers_json(find_contacts(reader, options), view);
     view.html = make_page(info.scene + " - RayContact", dump(json));
+    return view;
+}
+
+View make_clash_view(const ClashFile& file, const std::string& name, const ViewOptions& options) {
+    View view;
+    view.standing = static_cast<std::uint32_t>(file.parts.size());
+    std::vector<bool> clashes(file.parts.size(), false);
+    for (const ClashMark& mark : file.marks) clashes[mark.a] = clashes[mark.b] = true;
+    // What the page draws in float32 is about the middle, for parts far from the origin.
+    Vec3 low = file.parts[0].pose.translation, high = low;
+    for (const AssemblyPart& part : file.parts) {
+        const Vec3& at = part.pose.translation;
+        low = {std::min(low.x, at.x), std::min(low.y, at.y), std::min(low.z, at.z)};
+        high = {std::max(high.x, at.x), std::max(high.y, at.y), std::max(high.z, at.z)};
+    }
+    const Vec3 middle{(low.x + high.x) / 2, (low.y + high.y) / 2, (low.z + high.z) / 2};
+    const auto from_middle = [&](const Vec3& v) { return Vec3{v.x - middle.x, v.y - middle.y, v.z - middle.z}; };
+    std::vector<Pose> poses;
+    std::vector<DrawnMesh> meshes;
+    std::map<const Mesh*, std::size_t> number;
+    Json bodies = Json::array(), names = Json::array(), marks = Json::array();
+    for (std::size_t i = 0; i < file.parts.size(); ++i) {
+        const AssemblyPart& part = file.parts[i];
+        const auto [shape, is_new] = number.try_emplace(part.mesh.get(), meshes.size());
+        if (is_new) meshes.push_back({part.mesh->name, part.mesh->vertices, part.mesh->triangles});
+        poses.push_back({part.pose.rotation, from_middle(part.pose.translation)});
+        bodies.push_back({shape->second, 0, 1, clashes[i] ? 0xcc2a22 : 0x999999});
+        names.push_back(part.name);
+    }
+    for (const ClashMark& mark : file.marks) {
+        const Vec3 point = from_middle(mark.point);
+        marks.push_back({{"name", mark.name},
+                         {"kind", mark.kind},
+                         {"a", mark.a},
+                         {"b", mark.b},
+                         {"depth", mark.depth ? Json(*mark.depth) : Json()},
+                         {"at", {mark.point.x, mark.point.y, mark.point.z}},
+                         {"point", {point.x, point.y, point.z}}});
+    }
+    const Motion motion = standing(poses);
+    const Json json{{"scene", name},
+                    {"dt", 1},
+                    {"steps", 1},
+                    {"bodies", bodies},
+                    {"names", names},
+                    {"standing", view.standing},
+                    {"shapes", shapes_json(meshes, options.triangles, view.shape_bytes)},
+                    {"motion", motion_json(motion, view)},
+                    {"layers", nullptr},
+                    {"clashes", marks}};
+    view.html = make_page(name + " - RayContact", dump(json));
     return view;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <recording/reader.h>
+#include <view/clashes.h>
 
 #include <raycontact/settings.h>
 
@@ -34,5 +35,7 @@ struct View {
 
 /// Throws InputError for a damaged recording, one without steps, or unusable settings.
 View make_view(recording::Reader& reader, const ViewOptions& options);
+/// Of what raycontact clash wrote: a list of its clashes, those parts red, the others faint. name: of the file.
+View make_clash_view(const ClashFile& file, const std::string& name, const ViewOptions& options);
 
 } // namespace raycontact::view

@@ -48,6 +48,23 @@ TEST_F(RunOwn, MeshesFallOnASlab) {
               log["hash"]);
 }
 
+// The same mesh as another program has it, in millimetres: 3000 "metres" long, and more than 100 m above the slab.
+TEST_F(RunOwn, SaysWhyAllJustFell) {
+    folder_.write("mm.obj", "v 0 0 0\nv 3000 0 0\nv 0 3000 0\nv 0 0 3000\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
+    const auto said = [&](std::vector<std::string> words) {
+        words.insert(words.begin(), {"run", "--bodies", "2", "--steps", "90", "--mesh", "mm.obj"});
+        const auto result = run_program(words, folder_.path());
+        EXPECT_EQ(result.status, 0);
+        return result.err;
+    };
+    const std::string fell = "in 1.5 s no body met anything, all just fell: a mesh is 3000 m long";
+    EXPECT_TRUE(said({}).starts_with(fell)) << said({});
+    EXPECT_NE(said({}).find("give --size"), std::string::npos);
+    EXPECT_TRUE(said({"--ground", "plane"}).starts_with(fell));
+    EXPECT_EQ(said({"--size", "0.3"}), "");
+    EXPECT_EQ(said({"--size", "0.3", "--ground", "plane"}), "") << "on a plane it rests, without contacts";
+}
+
 TEST_F(RunOwn, SaysWhatIsWrongWithAMeshThatStandsStill) {
     const std::string corners = "v -9 -9 0\nv 9 -9 0\nv 9 9 0\nv -9 9 0\n";
     folder_.write("up.obj", corners + "f 1 2 3 4\n");

@@ -2,8 +2,12 @@
 // `raycontact view` as a user's script meets it.
 #include "expect.h"
 
-#include <filesystem>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 
 namespace {
 
@@ -17,6 +21,10 @@ protected:
     ProgramResult view(std::vector<std::string> words) const {
         words.insert(words.begin(), "view");
         return run_program(words, folder_.path());
+    }
+    std::string text_of(const char* name) const {
+        std::ifstream file(folder_.path() / name, std::ios::binary);
+        return {std::istreambuf_iterator<char>(file), {}};
     }
     TemporaryFolder folder_;
 };
@@ -50,6 +58,42 @@ TEST_F(ViewProgram, SaysWhatToOpenWithoutADesktop) {
     const auto result = view({"a.glb", "--no-open", "--layers-every", "0"});
     EXPECT_EQ(result.status, 0) << result.err;
     EXPECT_NE(result.out.find("a.html: "), std::string::npos) << result.out;
+}
+
+TEST_F(ViewProgram, ShowsWhatClashWrote) {
+    for (const auto& [name, x] : {std::pair("a.obj", 5e6), {"b.obj", 5e6 + 1.75}, {"c.obj", 5e6 + 9}}) {
+        std::string text;
+        for (int i = 0; i < 8; ++i)
+            text += fmt::format("v {} {} {}\n", x + (i & 1 ? 1 : -1), i & 2 ? 1 : -1, i & 4 ? 1 : -1);
+        folder_.write(name, text + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n");
+    }
+    ASSERT_EQ(run_program({"clash", "a.obj", "b.obj", "c.obj", "--out", "red.glb"}, folder_.path()).status, 0);
+    const auto result = view({"red.glb", "--json"});
+    ASSERT_EQ(result.status, 0) << result.err;
+    const auto json = nlohmann::json::parse(result.out);
+    EXPECT_EQ(json["file"], "red.html");
+    EXPECT_EQ(json["bodies"], 3);
+    EXPECT_EQ(json["clashes"], 1);
+    const std::string html = text_of("red.html"), start = "id=\"recording\">";
+    const std::size_t from = html.find(start) + start.size();
+    const auto page = nlohmann::json::parse(html.substr(from, html.find("</script>", from) - from));
+    const auto& clash = page["clashes"][0];
+    EXPECT_EQ(clash["name"], "a.obj x b.obj");
+    EXPECT_EQ(clash["kind"], "overlapping");
+    EXPECT_EQ(std::pair(clash["a"], clash["b"]), std::pair(nlohmann::json(0), nlohmann::json(1)));
+    EXPECT_NEAR(clash["depth"].get<double>(), 0.25, 1e-6);
+    EXPECT_NEAR(clash["at"][0].get<double>(), 5e6 + 0.875, 0.126) << "of the file";
+    EXPECT_NEAR(clash["point"][0].get<double>(), 0.875 - 4.5, 0.126) << "of the page, about the middle";
+    EXPECT_EQ(page["bodies"][0][3], page["bodies"][1][3]);
+    EXPECT_NE(page["bodies"][0][3], page["bodies"][2][3]);
+
+    // What another program changed is no longer it.
+    std::string bytes = text_of("red.glb");
+    bytes.replace(bytes.find("\"kind\""), 6, "\"King\"");
+    folder_.write("red.glb", bytes);
+    expect_refused(view({"red.glb"}), "red.glb: is not as raycontact clash wrote it");
+    folder_.write("red.glb", bytes.substr(0, bytes.size() / 2));
+    expect_refused(view({"red.glb"}), "red.glb");
 }
 
 TEST_F(ViewProgram, RefusesWhatItCannotDo) {

@@ -1,11 +1,13 @@
 // Draws the bodies of a step: instances of each shape's levels of detail.
 const instanceFloats = 10; // place, turn, tint
 
+const tintOf = colour => [16, 8, 0].map(bits => (colour >> bits & 255) / 255);
+
 class Bodies {
   constructor(gl, shapes, list, motion) {
     this.gl = gl; this.shapes = shapes; this.motion = motion;
     this.shader = compile(gl, bodyVertex, bodyFragment);
-    this.list = list.map(([shape, first, end, colour]) => ({shape, first, end, tint: [16, 8, 0].map(bits => (colour >> bits & 255) / 255)}));
+    this.list = list.map(([shape, first, end, colour]) => ({shape, first, end, faint: false, tint: tintOf(colour)}));
     this.parts = shapes.map(shape => this.upload(shape));
     this.pose = new Float32Array(7);
     this.triangles = 0; // drawn in the last frame
@@ -41,10 +43,15 @@ class Bodies {
 
   // detail: 1 for a picture that stands, less where frames take too long.
   draw(k, step, camera, toClip, detail, clear) {
+    this.triangles = 0;
+    for (const faint of [false, true]) this.drawAll(body => (clear || body.faint) === faint, k, step, camera, toClip, detail, faint);
+  }
+
+  drawAll(wanted, k, step, camera, toClip, detail, clear) {
     const gl = this.gl, {uniforms} = this.shader, perUnit = camera.canvas.clientHeight * focal;
     for (const part of this.parts) for (const level of part.levels) level.length = 0;
     this.list.forEach((body, number) => {
-      if (step < body.first || step >= body.end) return;
+      if (step < body.first || step >= body.end || !wanted(body)) return;
       this.motion.pose(number, k, this.pose, 0);
       const shape = this.shapes[body.shape];
       const away = Math.max(Math.hypot(...camera.eye.map((e, axis) => e - this.pose[axis])), 1e-9);
@@ -57,7 +64,6 @@ class Bodies {
     gl.uniform1f(uniforms.alpha, clear ? 0.22 : 1);
     (clear ? gl.enable : gl.disable).call(gl, gl.BLEND);
     gl.depthMask(!clear);
-    this.triangles = 0;
     this.shapes.forEach((shape, s) => {
       const part = this.parts[s];
       gl.bindVertexArray(part.array);

@@ -21,15 +21,62 @@ function depthColour(part) {
 }
 const css = c => `rgb(${c.map(x => Math.round(255 * x)).join(' ')})`;
 
-class Layers {
-  constructor(gl, layers, size) {
-    this.gl = gl; this.layers = layers;
-    this.normalLength = 0.5 * size; // metres; size: a typical body's radius
-    this.pointSize = 0.05 * size;
-    this.steps = layers.steps.map(s => s.step);
+// Points and lines over the bodies: place, colour, alpha.
+class Marks {
+  constructor(gl, pointSize, leastPixels = 2.5) {
+    this.gl = gl; this.pointSize = pointSize; this.leastPixels = leastPixels;
     this.shader = compile(gl, layerVertex, layerFragment);
+    this.buffers = null;
+  }
+
+  show(lines, points) {
+    if (this.buffers) for (const old of this.buffers) { this.gl.deleteBuffer(old.buffer); this.gl.deleteVertexArray(old.array); }
+    this.buffers = [this.upload(lines, this.gl.LINES), this.upload(points, this.gl.POINTS)];
+  }
+
+  upload(numbers, kind) {
+    const gl = this.gl, array = gl.createVertexArray(), buffer = gl.createBuffer();
+    gl.bindVertexArray(array);
+    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+    gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(numbers), gl.STATIC_DRAW);
+    gl.enableVertexAttribArray(0);
+    gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 28, 0);
+    gl.enableVertexAttribArray(1);
+    gl.vertexAttribPointer(1, 4, gl.FLOAT, false, 28, 12);
+    gl.bindVertexArray(null);
+    return {array, buffer, kind, count: numbers.length / 7};
+  }
+
+  draw(toClip, pixelsAtOne, pixelRatio) {
+    if (!this.buffers) return 0;
+    const gl = this.gl, {program, uniforms} = this.shader;
+    gl.useProgram(program);
+    gl.uniformMatrix4fv(uniforms.toClip, false, toClip);
+    gl.uniform1f(uniforms.size, this.pointSize);
+    gl.uniform1f(uniforms.scale, pixelsAtOne);
+    gl.uniform1f(uniforms.least, this.leastPixels * pixelRatio);
+    gl.disable(gl.DEPTH_TEST);
+    let drawn = 0;
+    for (const {array, kind, count} of this.buffers) {
+      gl.uniform1i(uniforms.round, kind === gl.POINTS ? 1 : 0);
+      gl.bindVertexArray(array);
+      if (count) gl.drawArrays(kind, 0, count);
+      drawn += count;
+    }
+    gl.bindVertexArray(null);
+    gl.enable(gl.DEPTH_TEST);
+    return drawn;
+  }
+}
+
+class Layers extends Marks {
+  constructor(gl, layers, size) { // size: a typical body's radius, metres
+    super(gl, 0.05 * size);
+    this.layers = layers;
+    this.normalLength = 0.5 * size;
+    this.steps = layers.steps.map(s => s.step);
     this.cache = new Map();
-    this.buffers = null; this.key = '';
+    this.key = '';
     // One contact far deeper than the others must not make all others one colour: the ramp ends at a high percentile,
     // and what lies beyond has a colour of its own. Steps without layers count for the deepest, too.
     this.deepest = layers.depth;
@@ -88,42 +135,7 @@ class Layers {
         put(lines, p.point, colour, 1); put(lines, p.hit, colour, 1);
         put(points, p.point, colour, 1);
       }
-    if (this.buffers) for (const old of this.buffers) { this.gl.deleteBuffer(old.buffer); this.gl.deleteVertexArray(old.array); }
-    this.buffers = [this.upload(lines, this.gl.LINES), this.upload(points, this.gl.POINTS)];
+    this.show(lines, points);
     this.key = key;
-  }
-
-  upload(numbers, kind) {
-    const gl = this.gl, array = gl.createVertexArray(), buffer = gl.createBuffer();
-    gl.bindVertexArray(array);
-    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
-    gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(numbers), gl.STATIC_DRAW);
-    gl.enableVertexAttribArray(0);
-    gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 28, 0);
-    gl.enableVertexAttribArray(1);
-    gl.vertexAttribPointer(1, 4, gl.FLOAT, false, 28, 12);
-    gl.bindVertexArray(null);
-    return {array, buffer, kind, count: numbers.length / 7};
-  }
-
-  draw(toClip, pixelsAtOne, pixelRatio) {
-    if (!this.buffers) return 0;
-    const gl = this.gl, {program, uniforms} = this.shader;
-    gl.useProgram(program);
-    gl.uniformMatrix4fv(uniforms.toClip, false, toClip);
-    gl.uniform1f(uniforms.size, this.pointSize);
-    gl.uniform1f(uniforms.scale, pixelsAtOne);
-    gl.uniform1f(uniforms.least, 2.5 * pixelRatio);
-    gl.disable(gl.DEPTH_TEST);
-    let drawn = 0;
-    for (const {array, kind, count} of this.buffers) {
-      gl.uniform1i(uniforms.round, kind === gl.POINTS ? 1 : 0);
-      gl.bindVertexArray(array);
-      if (count) gl.drawArrays(kind, 0, count);
-      drawn += count;
-    }
-    gl.bindVertexArray(null);
-    gl.enable(gl.DEPTH_TEST);
-    return drawn;
   }
 }

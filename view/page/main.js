@@ -15,12 +15,13 @@ let dirty = true, moved = 0, detail = 1, before = null, frames = 0;
 const changed = () => { dirty = true; moved = performance.now(); };
 const camera = new Camera(canvas, changed);
 const controls = new Controls(recording, motion, changed);
+const clashes = recording.clashes ? new Clashes(gl, recording, bodies, camera, changed) : null;
 const fit = () => camera.fit(bodies.gathered(motion.kept - 1, recording.steps - 1));
 element('frame').onclick = canvas.ondblclick = fit;
 new ResizeObserver(changed).observe(canvas);
 
 const finest = recording.shapes.reduce((sum, s) => sum + s.triangles, 0);
-element('about').textContent = `${recording.scene}: ${counted(recording.bodies.length - recording.standing, 'moving body', 'moving bodies')}, ${recording.standing} standing still, ${counted(recording.shapes.length, 'shape', 'shapes')} of ${finest} triangles in all, ${counted(recording.steps, 'step', 'steps')} of ${(1000 * recording.dt).toFixed(1)} ms, method ${recording.method}, direction ${recording.direction}.`
+element('about').textContent = clashes ? `${recording.scene}: ${counted(recording.bodies.length, 'part', 'parts')}, ${counted(recording.clashes.length, 'clash', 'clashes')}. Lengths are in the unit of the file.` : `${recording.scene}: ${counted(recording.bodies.length - recording.standing, 'moving body', 'moving bodies')}, ${recording.standing} standing still, ${counted(recording.shapes.length, 'shape', 'shapes')} of ${finest} triangles in all, ${counted(recording.steps, 'step', 'steps')} of ${(1000 * recording.dt).toFixed(1)} ms, method ${recording.method}, direction ${recording.direction}.`
   + (motion.stride > 1 ? ` Every ${motion.stride}th step is here.` : '')
   + (recording.meshSource ? ` Meshes: ${recording.meshSource}` : '');
 
@@ -67,8 +68,8 @@ async function draw(now) {
   gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
   const toClip = camera.matrix();
   bodies.draw(controls.kept(), controls.kept() * motion.stride, camera, toClip, detail, element('clear').checked);
-  const marks = layerStep === null ? 0 : layers.draw(toClip, height * focal, ratio);
-  controls.say(recording, layerStep);
+  const marks = clashes ? clashes.draw(toClip, height * focal, ratio) : layerStep === null ? 0 : layers.draw(toClip, height * focal, ratio);
+  if (!clashes) controls.say(recording, layerStep);
   legend(names, by);
   ++frames;
   Object.assign(document.documentElement.dataset, {state: 'ready', frames, step: controls.step, triangles: bodies.triangles, marks, detail: detail.toPrecision(3)});
@@ -105,4 +106,5 @@ async function frame(now) {
   }
 }
 fit();
+if (clashes && element('clash').value) clashes.look(element('clash').value);
 requestAnimationFrame(frame);
