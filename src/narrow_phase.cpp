@@ -4,6 +4,7 @@
 #include "device/device.h"
 #include "executor/row_slices.h"
 #include "free_all.h"
+#include "interruption.h"
 #include "platform/system.h"
 #include "schedule/moving_pairs.h"
 
@@ -125,6 +126,7 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, const SlotChanges& mo
             left_out_.replace(executor, asked, reducer_.left_out());
         seen_ = moved.now();
     } catch (...) {
+        const Interruptible to_its_end(nullptr);
         begin_anew();
         pairs.forget();
         throw;
@@ -220,6 +222,7 @@ void NarrowPhase::choose_device(std::span<const PlacedBody> bodies, StepStats& s
 
 // What does not open is not missed: the CPU has found all contacts so far.
 void NarrowPhase::open_other() {
+    const Interruptible to_its_end(nullptr);
     const auto give_up = [&](const std::exception& error) {
         choice_->exclude(1, "the GPU does not open");
         parts_.warn(std::string("devices \"auto\" goes on with the CPU alone, since the GPU does not open: ")

@@ -6,6 +6,7 @@
 #include "contacts/predictions.h"
 #include "executor/float_environment.h"
 #include "free_all.h"
+#include "interruption.h"
 #include "narrow_phase.h"
 #include "next_poses.h"
 #include "pair_finder.h"
@@ -213,6 +214,7 @@ struct Scene::State {
             call_threads(pairs.slots().count());
             find_contacts(broad_ms);
         } catch (...) {
+            const Interruptible to_its_end(nullptr);
             narrow.begin_anew();
             finder.trim();
             drop_pairs();
@@ -249,6 +251,7 @@ struct Scene::State {
     }
 
     void rest(double broad_ms) {
+        const Interruptible to_its_end(nullptr);
         narrow.rest(stats);
         stats.broad_ms = broad_ms;
         end_step();
@@ -257,6 +260,7 @@ struct Scene::State {
     void find_contacts(double broad_ms) {
         place_bodies();
         narrow.step(bodies, moved, pairs, stats, broad_ms);
+        const Interruptible to_its_end(nullptr); // it has contacts
         end_step();
         stepped = moved.step_done();
         want_shapes();

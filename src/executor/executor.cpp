@@ -46,7 +46,12 @@ Pin::~Pin() {
 
 void SliceReference::operator()(std::uint32_t begin, std::uint32_t end) const {
     const FloatEnvironment environment;
-    call(function, begin, end);
+    const Interruptible interruptible(flag);
+    if (flag == nullptr) return call(function, begin, end);
+    for (const InterruptionCheck check; begin < end; begin += std::min(piece, end - begin)) {
+        check();
+        call(function, begin, begin + std::min(piece, end - begin));
+    }
 }
 
 Executor::Executor(std::uint32_t threads, int core, Priority priority)

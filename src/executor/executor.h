@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "interruption.h"
 #include "platform/system.h"
 
+#include <algorithm>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -14,7 +17,9 @@ namespace raycontact {
 struct SliceReference {
     const void* function;
     void (*call)(const void*, std::uint32_t, std::uint32_t);
-    /// Calls it under FloatEnvironment.
+    std::uint32_t piece;           ///< of a slice, done before it is asked again whether the work is to end
+    const std::atomic<bool>* flag; ///< of the caller's thread, which counts on each
+    /// Calls it under FloatEnvironment. Throws Interrupted.
     void operator()(std::uint32_t begin, std::uint32_t end) const;
 };
 
@@ -65,19 +70,26 @@ public:
         if (pool_) pool_->wake();
     }
     /// Calls slice(begin, end) over [0, count) in pieces of at least `grain`, under FloatEnvironment, and returns when
-    /// all are done. The first exception of a slice is thrown here.
+    /// all are done. The first exception of a slice is thrown here; Interrupted where the work is to end.
     template <typename Slice>
     void run(std::uint32_t count, std::uint32_t grain, Slice&& slice) {
         using Function = std::remove_reference_t<Slice>;
-        run_slices(count, grain, {&slice, [](const void* function, std::uint32_t begin, std::uint32_t end) {
-                                      (*static_cast<const Function*>(function))(begin, end);
-                                  }});
+        run_slices(count, grain,
+                   {&slice,
+                    [](const void* function, std::uint32_t begin, std::uint32_t end) {
+                        (*static_cast<const Function*>(function))(begin, end);
+                    },
+                    std::max(16 * grain, count / 256), interruption_flag});
     }
     /// Calls work(i) for each i below `count`.
     template <typename Work>
     void each(std::size_t count, std::uint32_t grain, Work&& work) {
         run(static_cast<std::uint32_t>(count), grain, [&](std::uint32_t begin, std::uint32_t end) {
-            for (std::uint32_t i = begin; i < end; ++i) work(i);
+            const InterruptionCheck check;
+            for (std::uint32_t i = begin; i < end; ++i) {
+                check();
+                work(i);
+            }
         });
     }
 

@@ -2,6 +2,7 @@
 #include "executor/side_by_side.h"
 
 #include "executor/float_environment.h"
+#include "interruption.h"
 #include "platform/system.h"
 
 #include <chrono>
@@ -63,6 +64,7 @@ void SideBySide::run(const std::function<void(std::size_t)>& function) {
         return;
     }
     function_ = &function;
+    flag_ = interruption_flag;
     running_ = static_cast<std::uint32_t>(threads_->size());
     ++runs_;
     wake();
@@ -80,7 +82,10 @@ void SideBySide::serve(std::size_t number) {
             calls = calls_;
         } while (!wait_awake(awake_before_a_run, [&] { return runs_ == run; }));
         if (!function_) return;
-        (*function_)(number);
+        {
+            const Interruptible interruptible(flag_);
+            (*function_)(number);
+        }
         calls = calls_; // the next call is for the next run
         if (--running_ == 0) running_.notify_one();
     }

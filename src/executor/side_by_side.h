@@ -32,6 +32,7 @@ private:
     bool has_threads() const; ///< not in a forked child
 
     const std::function<void(std::size_t)>* function_ = nullptr; ///< null: the threads end
+    const std::atomic<bool>* flag_ = nullptr;                    ///< of the caller's thread, which counts on each
     std::atomic<std::uint32_t> calls_{0};                        ///< of wake() and run()
     std::atomic<std::uint32_t> runs_{0};
     std::atomic<std::uint32_t> running_{0};              ///< threads

@@ -24,10 +24,13 @@ std::vector<HalfEdge> sorted_half_edges(std::span<const Triangle> triangles) {
     std::vector<HalfEdge> edges(next.back());
     for_each_side([&](const HalfEdge& side) { edges[next[side.lo]++] = side; });
     std::size_t first = 0; // next[v] is now the end of v's
-    for (std::uint32_t v = 0; v < vertex_count; first = next[v++])
+    const InterruptionCheck check;
+    for (std::uint32_t v = 0; v < vertex_count; first = next[v++]) {
+        check();
         std::sort(
             edges.begin() + static_cast<std::ptrdiff_t>(first), edges.begin() + static_cast<std::ptrdiff_t>(next[v]),
             [](const HalfEdge& a, const HalfEdge& b) { return a.hi != b.hi ? a.hi < b.hi : a.corner < b.corner; });
+    }
     return edges;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "interruption.h"
+
 #include <array>
 #include <compare>
 #include <cstdint>
@@ -27,7 +29,9 @@ std::vector<HalfEdge> sorted_half_edges(std::span<const Triangle> triangles);
 /// Calls visit(sides of one edge) for every edge.
 template <class Visit>
 void for_each_edge(std::span<const HalfEdge> edges, Visit&& visit) {
+    const InterruptionCheck check;
     for (std::size_t first = 0, last = 0; first < edges.size(); first = last) {
+        check();
         while (last < edges.size() && edges[last].lo == edges[first].lo && edges[last].hi == edges[first].hi) ++last;
         visit(edges.subspan(first, last - first));
     }

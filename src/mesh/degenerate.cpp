@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesh/degenerate.h"
 
+#include "interruption.h"
 #include "mesh/disjoint_sets.h"
 #include "mesh/lowest_equal.h"
 #include "mesh/predicates.h"
@@ -64,7 +65,9 @@ private:
         std::vector<Triangle> wound(triangles_);
         for (Triangle& t : wound) t = turned(t);
         const std::vector<std::uint32_t> lowest = lowest_equal(wound);
+        const InterruptionCheck check;
         for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+            check();
             flat_[t] = is_degenerate(triangles_[t], vertices_);
             if (has_repeated(triangles_[t]))
                 drop(t);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "interruption.h"
 #include "mesh/measure.h"
 #include "mesh/triangle_tree.h"
 
@@ -57,7 +58,9 @@ private:
 template <class Number, class Farthest, class Away, class Visit>
 void nearest_first(const TriangleTree& tree, Farthest&& farthest, Away&& away, Visit&& visit) {
     NearestLast<Number, std::uint32_t, most_tree_levels * NODE_LANES> waiting(0);
+    const InterruptionCheck check;
     while (!waiting.is_empty()) {
+        check();
         const auto next = waiting.take();
         if (next.away >= farthest()) continue;
         if ((next.item & LEAF) != 0) {
@@ -115,7 +118,9 @@ void nearest_pairs_first(const TriangleTree& a, const TriangleTree& b, Farthest&
         return extent.x + extent.y + extent.z;
     };
     NearestLast<Number, Branches, 2 * most_tree_levels * NODE_LANES> waiting({{0, NONE}, {0, NONE}});
+    const InterruptionCheck check;
     while (!waiting.is_empty()) {
+        check();
         const auto next = waiting.take();
         if (next.away >= farthest()) continue;
         const Branch &in_a = next.item.a, &in_b = next.item.b;

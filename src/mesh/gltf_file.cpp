@@ -3,6 +3,7 @@
 // damaged `indices` turns a mesh into a soup. Places in the file are named as the JSON names them: nodes[3].
 #include "mesh/gltf_file.h"
 
+#include "interruption.h"
 #include "json_depth.h"
 
 #include <raycontact/error.h>
@@ -335,7 +336,9 @@ std::vector<double> GltfFile::stored(const Item& from, const NumberType& type, s
     if (!fits) fail(view, "is too short for the " + std::to_string(count) + " records in it");
     std::vector<double> found;
     found.reserve(count * width);
+    const InterruptionCheck check;
     for (std::size_t i = 0; i < count; ++i) {
+        check();
         const char* const at = bytes.data() + start + offset + i * stride;
         for (std::size_t k = 0; k < width; ++k) found.push_back(type.read(at + k * type.size, true));
     }

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesh/input_file.h"
 
+#include "interruption.h"
+
 #include <raycontact/error.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <fstream>
 #include <system_error>
@@ -51,8 +54,12 @@ InputFile InputFile::read(const std::filesystem::path& path, std::size_t most) {
     } catch (const std::exception&) {
         file.fail("is too large for memory (" + std::to_string(size) + " bytes)");
     }
-    if (!stream.read(file.bytes.data(), static_cast<std::streamsize>(file.bytes.size())))
-        file.fail("could not be read to its end; is it still being written?");
+    constexpr std::size_t piece = std::size_t{1} << 24;
+    for (std::size_t at = 0; at < file.bytes.size(); at += piece) {
+        InterruptionCheck()();
+        if (!stream.read(file.bytes.data() + at, static_cast<std::streamsize>(std::min(piece, file.bytes.size() - at))))
+            file.fail("could not be read to its end; is it still being written?");
+    }
     return file;
 }
 

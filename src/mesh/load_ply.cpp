@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Our own reader: assimp keeps double coordinates as float32, and reads truncated or damaged elements without an error.
+#include "interruption.h"
 #include "mesh/polygon.h"
 #include "mesh/text_scanner.h"
 #include "mesh/vector.h"
@@ -167,7 +168,9 @@ private:
         const bool is_read = name_ == "vertex" || element.used[Element::corners] != Element::none;
         if (!is_read && (name_ == "edge" || element.is_of_vertices) && element.count > 0)
             mesh_.repairs.push_back("left out " + counted(element.count, "record") + " of element " + in_quotes(name_));
+        const InterruptionCheck check;
         for (record_ = 0; record_ < element.count; ++record_) {
+            check();
             Vec3 point;
             for (std::size_t i = 0; i < element.properties.size(); ++i) {
                 const Property& property = element.properties[i];

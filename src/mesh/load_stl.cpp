@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Our own reader: assimp welds and reorders vertices by its own rules, keeps text coordinates as float32 and accepts
 // truncated files without an error.
+#include "interruption.h"
 #include "mesh/groups.h"
 #include "mesh/text_scanner.h"
 #include "mesh/vector.h"
@@ -64,7 +65,9 @@ std::vector<Run> joined_files(const InputFile& file) {
 
 void add_facets(Mesh& mesh, const InputFile& file, const Run& run, bool payloads) {
     std::size_t facet = run.begin;
+    const InterruptionCheck check;
     for (std::size_t i = 0; i < run.count; ++i) {
+        check();
         const char* const corners = file.bytes.data() + facet + 12; // past the normal
         const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
         for (std::size_t k = 0; k < 3; ++k) {

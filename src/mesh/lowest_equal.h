@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "interruption.h"
+
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -17,7 +19,9 @@ std::vector<std::uint32_t> lowest_equal(const std::vector<Item>& items) {
     const std::size_t slots = std::bit_ceil(2 * items.size() + 1);
     std::vector<std::uint32_t> table(slots, empty), lowest;
     lowest.reserve(items.size());
+    const InterruptionCheck check;
     for (std::uint32_t i = 0; i < items.size(); ++i) {
+        check();
         std::size_t slot = XXH3_64bits(&items[i], sizeof(Item)) & (slots - 1);
         while (table[slot] != empty && items[table[slot]] != items[i]) slot = (slot + 1) & (slots - 1);
         if (table[slot] == empty) table[slot] = i;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesh/patches.h"
 
+#include "interruption.h"
+
 #include <map>
 
 namespace raycontact {
@@ -18,6 +20,7 @@ Patches find_patches(std::span<const Triangle> triangles, std::span<const HalfEd
     patches.of.assign(triangles.size(), none);
     patches.against.assign(triangles.size(), 0);
     std::vector<std::uint32_t> open;
+    const InterruptionCheck check;
     for (std::uint32_t seed = 0; seed < triangles.size(); ++seed) {
         if (patches.of[seed] != none) continue;
         const auto id = static_cast<std::uint32_t>(patches.list.size());
@@ -25,6 +28,7 @@ Patches find_patches(std::span<const Triangle> triangles, std::span<const HalfEd
         patches.of[seed] = id;
         open.assign(1, seed);
         while (!open.empty()) {
+            check();
             const std::uint32_t t = open.back();
             open.pop_back();
             ++patch.size;

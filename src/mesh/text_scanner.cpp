@@ -96,6 +96,7 @@ std::string_view TextScanner::word_on_line() {
 }
 
 bool TextScanner::next_line() {
+    check_();
     at_ = std::find_if(at_, end_, is_line_end);
     if (at_ == end_) return false;
     if (*at_ == '\r' && at_ + 1 != end_ && at_[1] == '\n') ++at_;
@@ -110,6 +111,7 @@ bool TextScanner::at_end() {
 }
 
 std::string_view TextScanner::word() {
+    check_();
     at_end();
     return word_on_line();
 }

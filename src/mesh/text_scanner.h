@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include "interruption.h"
 #include "mesh/input_file.h"
 #include "mesh/nonfinite_vertices.h"
 
@@ -61,6 +62,7 @@ private:
     const char* at_;
     const char* end_;
     std::size_t line_ = 1;
+    InterruptionCheck check_;
 };
 
 } // namespace raycontact

@@ -2,6 +2,7 @@
 #include <raycontact/error.h>
 #include <raycontact/mesh.h>
 
+#include "interruption.h"
 #include "mesh/check.h"
 #include "mesh/lowest_equal.h"
 #include "number_text.h"
@@ -78,7 +79,9 @@ std::vector<std::uint32_t> joined(const std::vector<Vec3>& places, std::vector<s
     std::vector<std::uint32_t> to(places.size());
     std::iota(to.begin(), to.end(), 0u);
     Grid grid(places, some.size(), length);
+    const InterruptionCheck check;
     for (const std::uint32_t i : some) {
+        check();
         to[i] = grid.nearest(places[i], i);
         if (to[i] == i) grid.add(i);
     }

@@ -2,6 +2,8 @@
 #ifdef RAYCONTACT_3MF
 #include "mesh/xml_reader.h"
 
+#include "interruption.h"
+
 #include <charconv>
 #include <cmath>
 #include <expat.h>
@@ -28,6 +30,7 @@ struct XmlReader::Callbacks {
         XmlReader& reader = *static_cast<XmlReader*>(user);
         if (reader.error_) return;
         try {
+            InterruptionCheck()();
             call(reader);
         } catch (...) {
             reader.error_ = std::current_exception();

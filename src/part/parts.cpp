@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "part/parts.h"
 
+#include "interruption.h"
+
 #include <algorithm>
 
 namespace raycontact {
@@ -31,6 +33,8 @@ std::size_t Parts::first() const {
 
 void Parts::attempt(std::size_t number, const Function& work) {
     if (!has(number)) return;
+    // What a GPU was given is not left halfway.
+    const Interruptible interruptible(devices_[number].starts_with("cpu") ? interruption_flag : nullptr);
     try {
         work(number);
     } catch (const DeviceError& error) {

@@ -2,9 +2,13 @@
 #include "shape/accelerators.h"
 
 #include "executor/float_environment.h"
+#include "interruption.h"
 #include "mesh/check.h"
 #include "platform/system.h"
 #include "shape/build.h"
+
+#include <chrono>
+#include <thread>
 
 namespace raycontact {
 
@@ -55,6 +59,12 @@ bool AcceleratorSlot::make(const ShapeData& shape, Executor& executor, const std
     const std::uint64_t here = platform::process_id();
     for (std::uint64_t maker = 0; get() == nullptr;) {
         if (maker == here) {
+            // Also by a thread that nobody interrupts.
+            const InterruptionCheck check;
+            while (check.can_end() && maker_ == here) {
+                check();
+                std::this_thread::sleep_for(std::chrono::milliseconds(1));
+            }
             maker_.wait(here);
             maker = maker_;
         } else if (maker_.compare_exchange_strong(maker, here)) {

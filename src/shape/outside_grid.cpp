@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "interruption.h"
 #include "shape/build.h"
 #include "shape/cells.h"
 #include "shape/mesh_rays.h"
@@ -41,7 +42,9 @@ void build_outside_grid(const ShapeData& shape, Accelerators& made, const std::s
     std::vector<State> states(static_cast<std::size_t>(cells.count()), Unknown);
     std::size_t visits_left = 20 * states.size() + 1000 * shape.mesh.triangles.size();
     const double step = 1 / double(scale), half = (0.5 + margin) / double(scale);
+    const InterruptionCheck check;
     for (const auto& triangle : shape.mesh.triangles) {
+        check();
         const Vec3 corners[] = {shape.point(triangle[0]), shape.point(triangle[1]), shape.point(triangle[2])};
         const Box box = box_of(corners);
         const Cell from = cell_of(box.low, -margin), to = cell_of(box.high, margin);

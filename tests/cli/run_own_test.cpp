@@ -48,19 +48,21 @@ TEST_F(RunOwn, MeshesFallOnASlab) {
               log["hash"]);
 }
 
-// The same mesh as another program has it, in millimetres: 3000 "metres" long, and more than 100 m above the slab.
+// A mesh as another program has it, in millimetres: 3000 "metres" long, and more than 100 m above the slab.
 TEST_F(RunOwn, SaysWhyAllJustFell) {
     folder_.write("mm.obj", "v 0 0 0\nv 3000 0 0\nv 0 3000 0\nv 0 0 3000\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n");
-    const auto said = [&](std::vector<std::string> words) {
-        words.insert(words.begin(), {"run", "--bodies", "2", "--steps", "90", "--mesh", "mm.obj"});
+    const auto said = [&](std::vector<std::string> words, const char* steps = "90") {
+        words.insert(words.begin(), {"run", "--bodies", "2", "--steps", steps, "--mesh", "mm.obj"});
         const auto result = run_program(words, folder_.path());
         EXPECT_EQ(result.status, 0);
         return result.err;
     };
-    const std::string fell = "in 1.5 s no body met anything, all just fell: a mesh is 3000 m long";
-    EXPECT_TRUE(said({}).starts_with(fell)) << said({});
+    const std::string fell = "for 1.5 s most bodies just fell: a mesh is 3000 m long";
+    EXPECT_NE(said({}).find(fell), std::string::npos) << said({});
     EXPECT_NE(said({}).find("give --size"), std::string::npos);
-    EXPECT_TRUE(said({"--ground", "plane"}).starts_with(fell));
+    EXPECT_NE(said({"--ground", "plane"}).find(fell), std::string::npos);
+    // They meet the slab, and are too heavy to be stopped.
+    EXPECT_NE(said({"--size", "100"}, "240").find(" just fell: a mesh is 100 m long"), std::string::npos);
     EXPECT_EQ(said({"--size", "0.3"}), "");
     EXPECT_EQ(said({"--size", "0.3", "--ground", "plane"}), "") << "on a plane it rests, without contacts";
 }
