@@ -13,6 +13,10 @@ function(raycontact_strict target)
     endif()
     # No contraction anywhere: one fused multiply-add changes a bit, and a bit changes the hash.
     target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -ffp-contract=off)
+    if(CMAKE_CXX_COMPILER_ID STREQUAL "Clang")
+        # A user of clang++ may have it on, and our headers are not always system headers.
+        target_compile_options(${target} PRIVATE -Wextra-semi)
+    endif()
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
         # g++ 12 loses the rounding of double -> float -> double when it vectorises such conversions side by side.
         target_compile_options(${target} PRIVATE -fno-tree-slp-vectorize)

@@ -256,8 +256,8 @@ class Scene:
         """One step: all contacts where the bodies are now, sorted by the slots of both bodies, then by key.
 
         pairs: (n, 2) ids from a broad phase of your own, in any order; None: those whose boxes overlap.
-        Raises InputError for a pair of a body with itself or with one that is not in the scene. Ctrl-C counts when the
-        step is done.
+        Raises InputError for a pair of a body with itself or with one that is not in the scene. After Ctrl-C there are
+        no contacts, and the next step finds all anew.
         """
         found = self._core.find_contacts(None if pairs is None else as_pairs(pairs, "pairs"))
         return Contacts._from_bytes(found)

@@ -80,7 +80,8 @@ void for_each_item(std::size_t count, std::uint32_t threads, const std::string& 
         std::vector<std::jthread> helpers; // joined before the GIL is taken again
         for (std::size_t i = 1; i < std::min<std::size_t>(threads, count); ++i) {
             try {
-                helpers.emplace_back([&batch] {
+                helpers.emplace_back([&batch, &without_gil] {
+                    const Interruptible interruptible(without_gil.flag());
                     while (batch.work_on_block()) {
                     }
                 });

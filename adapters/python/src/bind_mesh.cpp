@@ -97,14 +97,17 @@ void bind_mesh(nb::module_& m) {
     m.def(
         "parse_mesh",
         [](const nb::bytes& bytes, const std::string& format, const std::string& name) {
-            return load_mesh(std::span(static_cast<const std::byte*>(bytes.data()), bytes.size()), format_from(format),
-                             name);
+            const std::span all(static_cast<const std::byte*>(bytes.data()), bytes.size());
+            const MeshFormat read_as = format_from(format);
+            const WithoutGil without_gil;
+            return load_mesh(all, read_as, name);
         },
         "data"_a, "format"_a, "name"_a);
     m.def(
         "make_mesh",
         [](const Coordinates& vertices, const Corners& triangles, const std::string& name,
            const std::vector<std::string>& repairs) {
+            const WithoutGil without_gil;
             Mesh mesh = make_mesh(std::span(vertices.data(), vertices.size()),
                                   std::span(triangles.data(), triangles.size()), name);
             mesh.repairs = repairs;

@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <csignal>
 #include <thread>
 
 namespace nb = nanobind;
@@ -26,6 +27,63 @@ void end() {
     PyEval_RestoreThread(state);
 }
 
+std::atomic<bool> ctrl_c = false; ///< was pressed while the main thread computes
+
+#ifdef SA_SIGINFO
+
+struct sigaction pythons {}; ///< what was there before ours
+
+void on_ctrl_c(int number) {
+    ctrl_c = true;
+    pythons.sa_handler(number);
+}
+
+bool is_there(const struct sigaction& action) {
+    return (action.sa_flags & SA_SIGINFO) == 0 && action.sa_handler != SIG_DFL && action.sa_handler != SIG_IGN;
+}
+
+/// Whether this is the main thread, and Ctrl-C would raise KeyboardInterrupt: a handler of the user's may go on.
+bool python_raises() {
+    try {
+        static const nb::handle main_thread =
+            nb::object(nb::module_::import_("threading").attr("main_thread")).release();
+        static const nb::handle handler = nb::object(nb::module_::import_("signal").attr("getsignal")).release();
+        static const nb::handle usual =
+            nb::object(nb::module_::import_("signal").attr("default_int_handler")).release();
+        return nb::cast<unsigned long>(main_thread().attr("ident")) == PyThread_get_thread_ident()
+               && handler(SIGINT).is(usual);
+    } catch (const nb::python_error&) {
+        return false; // the interpreter is about to end
+    }
+}
+
+bool listen() {
+    struct sigaction now {};
+    if (!python_raises() || sigaction(SIGINT, nullptr, &now) != 0) return false;
+    // Ours is there in a call from within another one, of its progress(), say: that one listens.
+    if (!is_there(now) || now.sa_handler == on_ctrl_c) return false;
+    ctrl_c = false;
+    pythons = now;
+    struct sigaction ours = now;
+    ours.sa_handler = on_ctrl_c;
+    return sigaction(SIGINT, &ours, nullptr) == 0;
+}
+
+void stop_listening() {
+    struct sigaction now {};
+    if (sigaction(SIGINT, nullptr, &now) == 0 && is_there(now) && now.sa_handler == on_ctrl_c)
+        sigaction(SIGINT, &pythons, nullptr);
+}
+
+#else
+
+bool listen() {
+    return false;
+}
+void stop_listening() {}
+
+#endif
+
 } // namespace
 
 bool is_ending() {
@@ -36,18 +94,31 @@ void watch_the_end() {
     nb::module_::import_("atexit").attr("register")(nb::cpp_function(&end));
     const nb::module_ os = nb::module_::import_("os");
     if (nb::hasattr(os, "register_at_fork")) { // a child has none of its parent's threads
-        os.attr("register_at_fork")(nb::arg("after_in_child") = nb::cpp_function([] { computing = 0; }));
+        os.attr("register_at_fork")(nb::arg("after_in_child") = nb::cpp_function([] {
+                                        computing = 0;
+                                        stop_listening();
+                                    }));
     }
 }
 
-WithoutGil::WithoutGil() : state_(nullptr) {
+WithoutGil::WithoutGil() : listens_(listen()) {
+    if (listens_ && PyErr_CheckSignals() != 0) {
+        stop_listening();
+        throw nb::python_error();
+    }
+    if (listens_) interruptible_.emplace(&ctrl_c);
     ++computing;
     state_ = PyEval_SaveThread();
 }
 
 WithoutGil::~WithoutGil() {
+    if (listens_) stop_listening();
     take_back();
     --computing;
+}
+
+const std::atomic<bool>* WithoutGil::flag() const {
+    return listens_ ? &ctrl_c : nullptr;
 }
 
 // Counted until it has the GIL, so that end() lets go of it once more for this thread.

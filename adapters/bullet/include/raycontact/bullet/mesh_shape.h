@@ -25,7 +25,7 @@ enum class Bounds {
 /// algorithms do ray and sweep tests.
 ATTRIBUTE_ALIGNED16(class) RAYCONTACT_API MeshShape : public btConcaveShape {
 public:
-    BT_DECLARE_ALIGNED_ALLOCATOR();
+    BT_DECLARE_ALIGNED_ALLOCATOR()
 
     /// Share one shape among any number of these. Throws InputError for none.
     explicit MeshShape(std::shared_ptr<const Shape> shape, Bounds bounds = Bounds::vertices);
