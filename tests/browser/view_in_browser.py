@@ -59,6 +59,7 @@ def main(chromium, raycontact, recording=None):
         try:
             check(browser, page)
             check_legend(browser, raycontact, folder)
+            check_clashes(browser, raycontact, folder)
         finally:
             browser.close()
 
@@ -88,6 +89,36 @@ def check_legend(browser, raycontact, folder):
     assert re.search(r"[1-9][0-9.]* mm.*deeper, up to 1 m in step 0$", legend), legend
     about = browser.value("document.getElementById('about').textContent")
     assert "3 moving bodies, 2 standing still" in about, about
+
+
+def check_clashes(browser, raycontact, folder):
+    """Three cubes in a row, of which the second meets both others, and one that is away."""
+    names = []
+    for i, x in enumerate((0, 1.75, 3.25, 9)):
+        names.append(f"part{i}.obj")
+        lines = [line.split() for line in CUBE.splitlines()]
+        with open(os.path.join(folder, names[-1]), "w") as file:
+            file.writelines(f"v {float(w[1]) + x} {w[2]} {w[3]}\n" if w[0] == "v" else " ".join(w) + "\n" for w in lines)
+    subprocess.run([raycontact, "clash", *names, "--out", "red.glb"], cwd=folder, check=True, capture_output=True)
+    subprocess.run([raycontact, "view", "red.glb", "--json"], cwd=folder, check=True, capture_output=True)
+    browser.size(1280, 800)
+    page = os.path.join(folder, "red.html")
+    open_page(browser, page)
+    browser.wait_for("+document.documentElement.dataset.marks === 2")
+    assert colours(browser) > 2, "the picture is empty"
+    assert "4 parts, 2 clashes" in browser.value("document.getElementById('about').textContent")
+    for hidden in ("play", "time", "layers"):
+        assert browser.value(f"document.getElementById('{hidden}').offsetParent === null"), hidden
+    options = browser.value("[...document.getElementById('clash').options].map(o => o.textContent).join('; ')")
+    assert options == ("all: 2 clashes; 1. part1.obj x part2.obj: overlapping, 0.5 deep; "
+                       "2. part0.obj x part1.obj: overlapping, 0.25 deep"), options
+    open_page(browser, page, "#clash=2")
+    browser.wait_for("+document.documentElement.dataset.marks === 1")
+    said = browser.value("document.getElementById('said').textContent")
+    assert re.match(r"at (0\.[7-9]|1,)", said), said
+    browser.value("(list => { list.value = 0; list.onchange(); })(document.getElementById('clash'))")
+    browser.wait_for("document.getElementById('said').textContent.startsWith('at 2')")
+    assert not browser.problems, browser.problems
 
 
 # The page's clock, moved by hand: tick(milliseconds) draws the frame that is due then.

@@ -5,11 +5,11 @@ const pairTints = [[0.82, 0.18, 0.14], [0.16, 0.4, 0.85]];
 class Clashes extends Marks {
   constructor(gl, recording, bodies, camera, changed) {
     const radii = recording.bodies.map(([shape]) => bodies.shapes[shape].radius);
-    super(gl, 0.02 * median(radii), 4);
+    super(gl, 0.02 * median(radii), 6);
     Object.assign(this, {recording, bodies, camera, changed, radii});
     this.tints = bodies.list.map(body => body.tint);
     const list = element('clash'), kept = recording.clashes;
-    list.add(new Option(kept.length ? `all ${counted(kept.length, 'clash', 'clashes')}` : 'no clashes', ''));
+    list.add(new Option(`all: ${counted(kept.length, 'clash', 'clashes')}`, ''));
     kept.forEach((clash, i) => list.add(new Option(`${i + 1}. ${clash.name}: ${this.words(clash)}`, i)));
     list.onchange = () => { this.choose(list.value); this.look(list.value); };
     element('clash-label').hidden = false;
