@@ -4,6 +4,7 @@
 // the polygon in which their shadows overlap; on it the lower height is linear, but for one straight fold.
 #include <raycontact/clash.h>
 
+#include "interruption.h"
 #include "mesh/measure.h"
 #include "query/checks.h"
 
@@ -157,13 +158,16 @@ double overlap_volume(const Shape& a, const Pose& pose_a, const Shape& b, const 
     std::sort(second.begin(), second.end(), [](const Face& f, const Face& g) { return f.low_x < g.low_x; });
     double widest = 0, sum = 0;
     for (const Face& g : second) widest = std::max(widest, g.high_x - g.low_x);
-    for (const Face& f : first)
+    const InterruptionCheck check;
+    for (const Face& f : first) {
+        check();
         for (auto at = std::ranges::lower_bound(second, f.low_x - widest, {}, &Face::low_x); at != second.end(); ++at) {
             const Face& g = *at;
             if (g.low_x >= f.high_x) break;
             if (g.high_x <= f.low_x || g.low_y >= f.high_y || g.high_y <= f.low_y) continue;
             sum += f.sign * g.sign * volume_below_both(f, g);
         }
+    }
     return std::max(sum, 0.0);
 }
 

@@ -109,16 +109,18 @@ TEST(Interruption, ASceneGoesOn) {
             Scene scene(settings), calm(settings);
             std::vector<Pose> poses;
             std::vector<BodyId> bodies;
-            for (int i = 0; i < 64; ++i) {
+            for (int i = 0; i < 32; ++i) {
                 poses.push_back({.translation = {0.5 * (i & 3), 0.5 * (i >> 2 & 3), 0.5 * (i >> 4)}});
                 bodies.push_back(scene.add(shape, poses.back()));
                 calm.add(shape, poses.back());
             }
             auto took = 2000us;
-            for (int step = 0; step < 60; ++step) {
+            for (int step = 0; step < 40; ++step) {
                 std::uniform_real_distribution<double> move(-0.02, 0.02);
                 for (Pose& pose : poses)
-                    if (random() % 3 != 0) pose.translation = pose.translation + Vec3{move(random), move(random), 0};
+                    if (random() % 3 != 0)
+                        pose.translation = {pose.translation.x + move(random), pose.translation.y + move(random),
+                                            pose.translation.z};
                 scene.set_poses(bodies, poses);
                 calm.set_poses(bodies, poses);
                 const auto start = std::chrono::steady_clock::now();
@@ -143,7 +145,7 @@ TEST(Interruption, ASceneGoesOn) {
                 ASSERT_TRUE(device_test::same(scene.contacts(), wanted)) << step << ", " << threads << " threads";
             }
         }
-    EXPECT_GE(ended, 32u);
+    EXPECT_GE(ended, 20u);
     std::cout << ended << " steps ended early, " << done << " came to their end\n";
 }
 
