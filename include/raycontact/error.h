@@ -14,7 +14,7 @@ namespace raycontact {
 /// Each function says when it throws InputError, and when it throws std::runtime_error, for what failed though the
 /// input was good: a device, a disk. Any may throw std::bad_alloc; any that prepares meshes, makes shapes or finds
 /// contacts may throw std::runtime_error where the system gives no threads. What a callback throws passes through. A
-/// function that says nothing throws nothing else.
+/// function that says nothing throws nothing else, and Interrupted only as an Interruptible has it.
 class RAYCONTACT_API InputError : public std::runtime_error {
 public:
     using std::runtime_error::runtime_error;
