@@ -351,7 +351,8 @@ void add_clash(CLI::App& app) {
     add_out(*command, "--out", options->out, "write all parts there as .glb, those that clash in red")
         ->type_name("FILE.glb");
     add_out(*command, "--csv", options->csv, "write the clashes there as a table")->type_name("FILE.csv");
-    add_out(*command, "--bcf", options->bcf, "write the clashes there as topics of BIM Collaboration Format 2.1; needs --unit")
+    add_out(*command, "--bcf", options->bcf,
+            "write the clashes there as topics of BIM Collaboration Format 2.1; needs --unit")
         ->type_name("FILE.bcfzip");
     command->add_flag("--json", options->json, "print one JSON line a clash on stdout");
     command->add_flag("--check", options->check, "exit status 3 where parts clash");
