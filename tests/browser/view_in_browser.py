@@ -96,9 +96,9 @@ def check_clashes(browser, raycontact, folder):
     names = []
     for i, x in enumerate((0, 1.75, 3.25, 9)):
         names.append(f"part{i}.obj")
-        lines = [line.split() for line in CUBE.splitlines()]
+        rows = [line.split() for line in CUBE.splitlines()]
         with open(os.path.join(folder, names[-1]), "w") as file:
-            file.writelines(f"v {float(w[1]) + x} {w[2]} {w[3]}\n" if w[0] == "v" else " ".join(w) + "\n" for w in lines)
+            file.writelines(f"v {float(w[1]) + x} {w[2]} {w[3]}\n" if w[0] == "v" else " ".join(w) + "\n" for w in rows)
     subprocess.run([raycontact, "clash", *names, "--out", "red.glb"], cwd=folder, check=True, capture_output=True)
     subprocess.run([raycontact, "view", "red.glb", "--json"], cwd=folder, check=True, capture_output=True)
     browser.size(1280, 800)
