@@ -26,7 +26,8 @@ void LowSteps::step_over(Contact& contact, std::uint32_t vertex, std::uint32_t t
     const Vec3 point = source_.shape->data().point(vertex), from = transform_point(now_, point);
     const bool from_a = contact.feature.source == Side::a;
     const Vec3 out = rotated_back(target_.centred.rotation, (from_a ? -1.0 : 1.0) * Vec3(contact.normal));
-    const Approaches approaches(target, {}, from, transform_point(next_, point), margin_, 0);
+    const Approaches approaches(target, {}, from, transform_point(next_, point), margin_,
+                                1e-7 * smaller_size(source_, target_));
     const Approach best =
         approaches.least_change({triangle, out, -double(contact.depth)}, from + double(contact.depth) * out);
     if (best.face == triangle || !(best.gap < 0)) return;

@@ -109,8 +109,9 @@ void place(Contact& contact, const FeatureContact& found, BodyId a, BodyId b, co
               : vertex_feature(found.source == Side::a, shape.mesh.vertex_index[found.index],
                                other.mesh.triangle_index[found.other], found.kind);
     const auto depth = static_cast<float>(found.depth);
-    write_contact(contact, a, b, feature, transform_point(target.centred, found.point),
-                  transform_point({target.centred.rotation, {}}, found.normal), depth, std::fabs(depth),
+    Vec3 out = rotated(target.centred.rotation, found.normal);
+    if (found.when > 0) out = part_of_turn(out, rotated(target.next.rotation, found.normal), found.when);
+    write_contact(contact, a, b, feature, transform_point(target.centred, found.point), out, depth, std::fabs(depth),
                   direction == Direction::weighted ? weight_of(shape, other, found) : 1);
 }
 

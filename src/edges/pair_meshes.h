@@ -79,6 +79,7 @@ struct FeatureContact {
     Vec3 point;          ///< on the source
     Vec3 normal;         ///< out of the target, unit
     double depth;
+    double when = 0; ///< the part of the step after which they meet: the target, and the normal with it, turns so far
 };
 
 /// An edge of a shape, 3 x its lowest triangle + its first corner there.

@@ -62,7 +62,7 @@ std::optional<Approach> Approaches::first_met() const {
     if (face == NONE) return std::nullopt;
     const Vec3 out = unit(area_normal(target_, face)), corner = target_.corner(face, 0);
     if (!(dot(way, out) < 0)) return std::nullopt;
-    return stopped({face, out, dot(from_ - corner, out)}, from_ + first * way);
+    return stopped({face, out, dot(from_ - corner, out), std::max(0.0, first)}, from_ + first * way);
 }
 
 // Of the places around: an edge is one with both its faces, a corner with all that it shares an edge with.
@@ -104,8 +104,8 @@ void Approaches::add_near(std::vector<Approach>& found) const {
                       [](const Approach& one) { return std::pair(one.gap, one.face); });
 }
 
-// Of the faces beside the flush ones, those count that the vertex is above, or below by no more than the margin. So a
-// step of the surface that is lower is no wall.
+// Of the faces beyond a convex edge of the flush ones, those count that the vertex is above, or below by no more than
+// the margin. So a step of the surface that is lower is no wall.
 Approach Approaches::least_change(const Approach& stops, const Vec3& at) const {
     const Vec3 way = to_ - from_;
     double passed = -stops.gap - dot(stops.normal, way);
@@ -120,17 +120,20 @@ Approach Approaches::least_change(const Approach& stops, const Vec3& at) const {
             if (across == NONE) continue;
             const Vec3 a = target_.corner(flat[i], k), b = target_.corner(flat[i], (k + 1) % 3);
             const double away = length(at - nearest_of(at, a, b, b).point);
-            if (away > margin_ + passed) continue;
+            if (away > margin_ + glancing * passed) continue;
             const Vec3 n = unit(area_normal(target_, across));
             if (dot(n, own) > flush) {
                 const auto end = flat.begin() + static_cast<std::ptrdiff_t>(count);
                 if (count < most_flush && std::find(flat.begin(), end, across) == end) flat[count++] = across;
                 continue;
             }
+            const auto is_above = [&](std::uint32_t v) { return dot(target_.point(v) - a, own) > perturbation_; };
+            if (std::ranges::any_of(target_.mesh.triangles[across], is_above)) continue; // it averts nothing
             const double gap = dot(from_ - target_.corner(across, 0), n), past = -gap - dot(n, way);
-            if (past < passed && gap > -margin_ && away <= margin_ + std::max(0.0, past)) {
+            const bool is_beside = away <= margin_ || (past < glancing * passed && away <= margin_ + past);
+            if (past < passed && gap > -margin_ && is_beside) {
                 passed = past;
-                best = {across, n, gap};
+                best = {across, n, gap, stops.when};
             }
         }
     return best;

@@ -17,7 +17,11 @@ struct Approach {
     std::uint32_t face; ///< of the target
     Vec3 normal;        ///< of the target, outward, unit
     double gap;         ///< metres; below 0 it is inside
+    double when = 0;    ///< the part of the step after which they meet
 };
+
+/// A motion glances along a face of which it passes less than this part of what it passes of another.
+inline constexpr double glancing = 0.25;
 
 /// The target's near features that stop a vertex, one after the other (docs/internals/speculative.md).
 class Approaches {

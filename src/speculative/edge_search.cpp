@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "speculative/edge_search.h"
 
+#include "speculative/approach.h"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -23,19 +25,21 @@ constexpr double perturbations_until_touching = 4.4;
 struct Edge {
     std::uint32_t number;
     std::array<Vec3, 2> ends, ways;
-    std::array<Vec3, 2> normals; ///< of its faces; a border's has one
+    std::array<Vec3, 2> normals, turned; ///< of its faces, now and at the next step; a border's has one
     bool border;
 
     Vec3 along(double t) const { return ends[1] - ends[0] + t * (ways[1] - ways[0]); }
     Vec3 point(double at) const { return ends[0] + at * (ends[1] - ends[0]); }
     Vec3 way(double at) const { return ways[0] + at * (ways[1] - ways[0]); }
+    Vec3 normal(std::size_t k, double t) const { return t > 0 ? part_of_turn(normals[k], turned[k], t) : normals[k]; }
 };
 
 // By how much a unit direction leaves the arc between the normals of an edge's faces; of a border the half plane above
-// its face. along: the edge, unit, as its own face runs about it.
-double beyond_arc(const Edge& edge, const Vec3& along, const Vec3& direction) {
-    const double inward = dot(direction, cross(edge.normals[0], along));
-    return std::max(inward, -dot(direction, edge.border ? edge.normals[0] : cross(edge.normals[1], along)));
+// its face. t: after this part of the step. along: the edge, unit, as its own face runs about it.
+double beyond_arc(const Edge& edge, double t, const Vec3& along, const Vec3& direction) {
+    const Vec3 own = edge.normal(0, t);
+    const double inward = dot(direction, cross(own, along));
+    return std::max(inward, -dot(direction, edge.border ? own : cross(edge.normal(1, t), along)));
 }
 
 /// Where the lines of two edges are nearest, from 0 to 1 of each.
@@ -75,11 +79,8 @@ Edge edge_of(const ShapeData& shape, std::uint32_t number) {
     const auto [start, stop] = ends_of(shape, number);
     const auto [own, across] = faces_of(shape, number);
     const Vec3 n = unit(area_normal(shape, own));
-    return {number,
-            {shape.point(start), shape.point(stop)},
-            {},
-            {n, across == NONE ? n : unit(area_normal(shape, across))},
-            across == NONE};
+    const std::array normals{n, across == NONE ? n : unit(area_normal(shape, across))};
+    return {number, {shape.point(start), shape.point(stop)}, {}, normals, normals, across == NONE};
 }
 
 Edge edge_of_a(const OneWay& body, std::uint32_t number) {
@@ -87,34 +88,37 @@ Edge edge_of_a(const OneWay& body, std::uint32_t number) {
     for (std::size_t k = 0; k < 2; ++k) {
         const Vec3 end = std::exchange(edge.ends[k], transform_point(body.now, edge.ends[k]));
         if (body.moves) edge.ways[k] = transform_point(body.next, end) - edge.ends[k];
+        edge.turned[k] = rotated(body.next.rotation, edge.normals[k]);
         edge.normals[k] = rotated(body.now.rotation, edge.normals[k]);
     }
     return edge;
 }
 
 // Of the faces of either edge, one that averts the contact and changes the motion less stands for it, if the other edge
-// is above it as a whole, or below by no more than the margin.
-void change_least(FeatureContact& contact, const Edge& edge, const Edge& other, double at, double margin) {
-    const Vec3 way = edge.way(at);
+// is above it as a whole, or below by no more than the margin; and ends within the margin, or glances along it.
+void change_least(FeatureContact& contact, const Edge& edge, const Edge& other, const Places& at, double margin) {
+    const Vec3 way = edge.way(at[0]);
     double passed = contact.depth - dot(contact.normal, way);
     if (!(passed > 0)) return;
-    const auto ask = [&](const Vec3& n, const Places& gaps, const Places& past, const std::array<Vec3, 2>& points) {
+    const auto ask = [&](const Vec3& n, const Places& gaps, const Places& past, const Edge& ends) {
         const std::size_t k = past[0] > past[1] ? 0 : 1;
+        const double away = length(ends.ends[k] - ends.point(&ends == &edge ? at[0] : at[1]));
+        if (away > margin && past[k] > glancing * passed) return;
         if (!(std::min(gaps[0], gaps[1]) > -margin) || !(past[k] < passed)) return;
         passed = past[k];
-        contact.point = points[k];
+        contact.point = &ends == &edge ? ends.ends[k] : ends.ends[k] + gaps[k] * n;
         contact.normal = n;
         contact.depth = -gaps[k];
     };
     for (const Vec3& n : other.normals) {
         const auto gap = [&](std::size_t k) { return dot(n, edge.ends[k] - other.ends[0]); };
         const auto past = [&](std::size_t k) { return -gap(k) - dot(n, edge.ways[k]); };
-        ask(n, {gap(0), gap(1)}, {past(0), past(1)}, edge.ends);
+        ask(n, {gap(0), gap(1)}, {past(0), past(1)}, edge);
     }
     for (const Vec3& n : edge.normals) {
         const auto gap = [&](std::size_t k) { return dot(n, other.ends[k] - edge.ends[0]); };
         const auto past = [&](std::size_t k) { return dot(n, way) - gap(k); };
-        ask(-1.0 * n, {gap(0), gap(1)}, {past(0), past(1)}, {other.ends[0] - gap(0) * n, other.ends[1] - gap(1) * n});
+        ask(-1.0 * n, {gap(0), gap(1)}, {past(0), past(1)}, other);
     }
 }
 
@@ -159,8 +163,9 @@ private:
         });
     }
 
-    static bool is_in_arcs(const Edge& edge, const Edge& other, const Vec3& along, const Vec3& n) {
-        return beyond_arc(other, unit(other.along(0)), n) <= arc && beyond_arc(edge, unit(along), -1.0 * n) <= arc;
+    static bool is_in_arcs(const Edge& edge, const Edge& other, double t, const Vec3& along, const Vec3& n) {
+        return beyond_arc(other, 0, unit(other.along(0)), n) <= arc
+               && beyond_arc(edge, t, unit(along), -1.0 * n) <= arc;
     }
 
     bool will_meet(const Edge& edge, const Edge& other) {
@@ -172,8 +177,8 @@ private:
             const Vec3 n = unit(cross(along, other.along(0)));
             const double lean = dot(n, edge.way((*at)[0]));
             const Vec3 out = lean > 0 ? -1.0 * n : n;
-            if (lean == 0 || !is_in_arcs(edge, other, along, out)) continue;
-            tell(edge, other, *at, out);
+            if (lean == 0 || !is_in_arcs(edge, other, t, along, out)) continue;
+            tell(edge, other, t, *at, out);
             return true;
         }
         return false;
@@ -187,14 +192,14 @@ private:
         if (dot(n, other.normals[0] + other.normals[1]) < 0) n = -1.0 * n;
         const double gap = dot(n, edge.point((*at)[0]) - other.point((*at)[1]));
         if (gap >= -perturbations_until_touching * pair_.perturbation && gap <= pair_.margin
-            && is_in_arcs(edge, other, along, n))
-            tell(edge, other, *at, n);
+            && is_in_arcs(edge, other, 0, along, n))
+            tell(edge, other, 0, *at, n);
     }
 
-    void tell(const Edge& edge, const Edge& other, const Places& at, const Vec3& n) {
+    void tell(const Edge& edge, const Edge& other, double t, const Places& at, const Vec3& n) {
         const double gap = std::max(0.0, dot(n, edge.point(at[0]) - other.point(at[1])));
-        FeatureContact contact{Side::a, FeatureKind::edges, edge.number, other.number, edge.point(at[0]), n, -gap};
-        change_least(contact, edge, other, at[0], pair_.margin);
+        FeatureContact contact{Side::a, FeatureKind::edges, edge.number, other.number, edge.point(at[0]), n, -gap, t};
+        change_least(contact, edge, other, at, pair_.margin);
         contact.depth = std::min(0.0, contact.depth);
         found_.push_back(contact);
     }
@@ -211,10 +216,12 @@ private:
 void change_least(const SpeculativePair& pair, FeatureContact& contact) {
     const OneWay& body = pair.bodies[0];
     if (!body.moves || contact.depth > pair.margin) return;
-    const Edge edge = edge_of_a(body, contact.index);
-    const Vec3 along = edge.along(0);
-    const double at = dot(contact.point - edge.ends[0], along) / dot(along, along);
-    change_least(contact, edge, edge_of(body.target, contact.other), std::clamp(at, 0.0, 1.0), pair.margin);
+    const Edge edge = edge_of_a(body, contact.index), other = edge_of(body.target, contact.other);
+    const auto at = [](const Edge& e, const Vec3& p) {
+        const Vec3 along = e.along(0);
+        return std::clamp(dot(p - e.ends[0], along) / dot(along, along), 0.0, 1.0);
+    };
+    change_least(contact, edge, other, {at(edge, contact.point), at(other, contact.point)}, pair.margin);
 }
 
 void find_speculative_edges(const SpeculativePair& pair, std::span<const NearEdge> near, double least,

@@ -8,6 +8,11 @@
 
 namespace raycontact {
 
+/// A direction on its way from one to another, by a part of it.
+inline Vec3 part_of_turn(const Vec3& from, const Vec3& to, double part) {
+    return unit((1 - part) * from + part * to);
+}
+
 /// One body of a pair as the other sees it, in the other's centred frame.
 struct OneWay {
     const ShapeData &source, &target;

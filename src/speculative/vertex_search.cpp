@@ -24,9 +24,11 @@ void by_vertex(std::span<const NearEdge> near, Visit&& visit) {
 }
 
 // Whether a vertex reaches farthest against a target's normal, of all about it.
-bool reaches_farthest(const OneWay& body, std::uint32_t v, const Vec3& normal) {
+bool reaches_farthest(const OneWay& body, std::uint32_t v, const Approach& approach) {
     const ShapeData& source = body.source;
-    const Vec3 back = rotated_back(body.now.rotation, normal), p = source.point(v);
+    const Vec3 p = source.point(v), now = rotated_back(body.now.rotation, approach.normal);
+    const Vec3 back =
+        approach.when > 0 ? part_of_turn(now, rotated_back(body.next.rotation, approach.normal), approach.when) : now;
     if (!(dot(source.vertex_normals[v], back) < -sideways)) return false;
     return !any_neighbour(source, v, [&](std::uint32_t w) {
         const Vec3 off = source.point(w) - p;
@@ -85,10 +87,10 @@ void VertexSearch::find(const SpeculativePair& pair, Side side, std::uint32_t ve
         if (std::any_of(found.begin() + static_cast<std::ptrdiff_t>(first), found.end(),
                         [&](const FeatureContact& c) { return is_alike(c.normal); }))
             continue;
-        if (!reaches_farthest(body, vertex, one.normal)) continue;
+        if (!reaches_farthest(body, vertex, one)) continue;
         const bool has_other = touches != nullptr || found.size() > first;
         found.push_back({side, has_other ? FeatureKind::vertex_face : FeatureKind::vertex, vertex, one.face, p,
-                         one.normal, -one.gap});
+                         one.normal, -one.gap, one.when});
     }
     if (met && touches == nullptr && found.size() == first) followers_.push_back({vertex, p, *met});
 }
@@ -99,8 +101,8 @@ void VertexSearch::add_followers(const ShapeData& source, Side side, std::uint32
     any_neighbour(source, vertex, [&](std::uint32_t w) {
         const auto at = std::ranges::lower_bound(followers_, w, {}, &Follower::vertex);
         if (at == followers_.end() || at->vertex != w || !(dot(at->approach.normal, normal) > same_plane)) return false;
-        found.push_back(
-            {side, FeatureKind::vertex, w, at->approach.face, at->point, at->approach.normal, -at->approach.gap});
+        found.push_back({side, FeatureKind::vertex, w, at->approach.face, at->point, at->approach.normal,
+                         -at->approach.gap, at->approach.when});
         at->approach.normal = {}; // once
         return false;
     });

@@ -85,7 +85,7 @@ TEST(golden, directions_of_plain_meshes) {
 // The same meshes, with edges.
 TEST(golden, edges_of_plain_meshes) {
     expect_golden({bumpy_octahedron_mesh(10), frame_mesh(), l_prism_mesh(), tetrahedron_mesh(), bowl_mesh(8)}, 1.5, 6,
-                  "a3ace1fc053bb45a", 8299, Direction::reprojected, Features::edges);
+                  "e9a63f6733bfd147", 8260, Direction::reprojected, Features::edges);
 }
 
 // The procedural meshes of the scenes: changes with them too.

@@ -239,7 +239,7 @@ std::vector<Hold> contraptions() {
     all.push_back(foil("ball, a mesh, 100 m/s, foil of 1 mm", ball));
     ball.own = [] { return std::make_shared<btSphereShape>(btScalar(0.5)); };
     all.push_back(foil("ball, btSphereShape, the same", ball));
-    for (const int links : {5, 50}) all.push_back(chain(links));
+    for (const int links : {5, 10, 20, 50}) all.push_back(chain(links));
     all.push_back(gears());
     all.push_back(mug_on_a_hook());
     return all;

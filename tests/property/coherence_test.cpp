@@ -256,6 +256,7 @@ private:
         for (const Contact& c : found) {
             if (c.feature.kind != FeatureKind::vertex) continue;    // they follow from the vertices that were found
             if (settings.direction == Direction::refined) continue; // it names another face than the ray met
+            if (settings.features == Features::edges && c.ray_length == c.depth) continue; // edges saw it, no ray
             if (is_genuine(c, guests_[c.body_a], guests_[c.body_b])) {
                 ++counts_.genuine;
                 Contact lie = c;

@@ -2,21 +2,17 @@
 #pragma once
 
 #include "property/shapes.h"
-#include "reference/ray.h"
 #include "reference/side.h"
 #include "reference/solid_edges.h"
 #include "reference/vector.h"
 
 #include <algorithm>
-#include <limits>
-#include <map>
-#include <optional>
-#include <set>
+#include <vector>
 
 namespace raycontact::reference {
 
-// What speculative contacts a pair has (docs/internals/speculative.md), by brute force and in double: each vertex's
-// straight way and its distance from every triangle, each edge against each other.
+// Where two surfaces are nearest, by brute force and in double (docs/internals/speculative.md). It knows normal cones,
+// not the rule.
 
 inline Vec3 to_local(const Subject& subject, const Pose& pose, const Vec3& world) {
     return rotate_back(pose, world - pose.translation) - subject.solid.centre;
@@ -47,17 +43,13 @@ struct View {
     }
 };
 
-/// What a vertex, or an edge with another, is expected to have.
-struct Expected {
-    double gap = 0;
-    Vec3 normal; ///< out of the target, its frame
-    Vec3 point;  ///< of the source, the target's frame
-};
-/// By the numbers of the file: a vertex and 0, or two edges.
-using Key = std::pair<std::uint32_t, std::uint32_t>;
-struct Expectation {
-    std::map<Key, Expected> sure;
-    std::set<Key> doubtful; ///< close to where the answer changes
+/// A place of two surfaces that is locally nearest: a vertex and a point of the other surface, or points of two edges.
+struct Place {
+    bool edges = false;
+    std::uint32_t index = 0, other = 0; ///< by the file: a vertex and 0, or two edges
+    Vec3 normal;                        ///< out of the target, its frame
+    double gap = 0;                     ///< metres
+    bool sure = true;                   ///< the directions lie well within the normal cones of both features
 };
 
 inline Vec3 nearest_of_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
@@ -77,62 +69,66 @@ inline Vec3 nearest_of_triangle(const Solid& solid, std::uint32_t t, const Vec3&
     return best;
 }
 
-class Vertices {
+/// What is nearest within a margin, by brute force: every vertex against every triangle, every edge against every edge,
+/// with the normal cones of both features (Gauss map). tolerance: radians, nearly, by which a direction may leave them.
+class NearestPlaces {
 public:
-    Vertices(const View& view, double margin) : view_(view), margin_(margin), caster_(view.target.solid) {}
+    NearestPlaces(const View& view, double margin, double tolerance)
+        : view_(view), margin_(margin), tolerance_(tolerance), tiny_(1e-6 * view.size()) {}
 
-    /// touching: vertices of the file in contact, which have no other.
-    Expectation expect(const std::set<std::uint32_t>& touching) {
-        Expectation found;
-        const Solid& source = view_.source.solid;
-        const double way = view_.way();
-        for (std::size_t v = 0; v < source.vertices.size(); ++v) {
-            const Key key{source.vertex_index[v], 0};
-            if (touching.contains(key.first)) continue;
+    std::vector<Place> of_vertices() const {
+        const Solid &source = view_.source.solid, &target = view_.target.solid;
+        std::vector<Place> found;
+        for (std::uint32_t v = 0; v < source.vertices.size(); ++v) {
             const Vec3 p = view_.at_now(source.vertices[v]);
-            bool sure = std::abs(way - margin_) > 1e-7;
-            if (source.exits[v] > 0) { // others cast no ray and have no contact of any kind
-                const auto one = ask(v, p, way > margin_, sure);
-                if (one && sure) found.sure[key] = *one;
+            for (std::uint32_t t = 0; t < target.triangles.size(); ++t) {
+                const Vec3 q = nearest_of_triangle(target, t, p), n = unit(p - q);
+                const double gap = length(p - q);
+                if (gap > margin_ + tiny_ || gap < 10 * tiny_) continue; // what is nearer nearly touches
+                const double by = std::max(leaves_cone_of(target, q, n), leaves_cone_at(source, v, n));
+                const double turned = dot(view_.turned(source.vertex_normals[v]), n), side = side_of(p, q);
+                if (by > tolerance_ || turned > -1e-7 || side < 0.01) continue;
+                const bool sure = by < -1e-4 && gap < margin_ - tiny_ && turned < -1e-3 && side > 0.1;
+                found.push_back({false, source.vertex_index[v], 0, n, gap, sure});
             }
-            if (!sure) found.doubtful.insert(key);
         }
         return found;
     }
 
+    /// Of the source's edges against the target's; sharp, convex ones.
+    std::vector<Place> of_edges() const {
+        std::vector<Place> found;
+        for (const Edge& e : edges_of(view_.source.solid))
+            for (const Edge& g : edges_of(view_.target.solid))
+                if (e.sharp && !e.concave && g.sharp && !g.concave) ask(e, g, found);
+        return found;
+    }
+
 private:
-    std::optional<Expected> ask(std::size_t v, const Vec3& p, bool moves, bool& sure) {
-        const Solid& target = view_.target.solid;
-        const double perturbation = 3e-7 * view_.size();
-        if (moves) {
-            const Vec3 to = view_.at_then(view_.source.solid.vertices[v]), direction = unit(to - p);
-            const double way = length(to - p);
-            const Hit hit = caster_.closest(p, direction), behind = caster_.closest(p, -direction);
-            if (behind.distance < perturbation || hit.distance < perturbation
-                || std::abs(hit.distance - way) < perturbation)
-                sure = false;
-            if (hit.triangle != Hit::none && hit.distance <= way && !hit.from_inside) {
-                const Vec3& n = target.face_normals[hit.triangle];
-                if (-dot(n, direction) < 1e-5) sure = false;
-                return Expected{dot(p - target.vertices[target.triangles[hit.triangle][0]], n), n, p};
+    // By how much the surroundings of a point of the surface lie along n, of a length.
+    static double leaves_cone_of(const Solid& solid, const Vec3& q, const Vec3& n) {
+        double most = -1;
+        for (std::uint32_t t = 0; t < solid.triangles.size(); ++t) {
+            if (length(q - nearest_of_triangle(solid, t, q)) > 1e-9 * solid.diagonal) continue;
+            for (const std::uint32_t c : solid.triangles[t]) {
+                const Vec3 there = solid.vertices[c] - q;
+                if (length(there) > 1e-9 * solid.diagonal && !is_in_plane(there, n))
+                    most = std::max(most, dot(unit(there), n));
             }
         }
-        double least = std::numeric_limits<double>::infinity();
-        Vec3 at{};
-        for (std::uint32_t t = 0; t < target.triangles.size(); ++t) {
-            const Vec3 q = nearest_of_triangle(target, t, p);
-            if (length(p - q) >= least) continue;
-            least = length(p - q);
-            at = q;
-        }
-        if (std::abs(least - margin_) < perturbation || least < 10 * perturbation) sure = false;
-        if (least > margin_) return std::nullopt;
-        const Vec3 n = unit(p - at);
-        const double facing = dot(view_.turned(view_.source.solid.vertex_normals[v]), n);
-        const double side = side_of(p, at);
-        if (std::abs(facing) < 1e-4 || std::abs(side) < 0.1) sure = false;
-        if (!(facing < 0) || !(side > 0)) return std::nullopt;
-        return Expected{least, n, p};
+        return most;
+    }
+    // Within a face or along an edge a direction is at right angles, but for rounding.
+    static bool is_in_plane(const Vec3& there, const Vec3& n) { return std::abs(dot(unit(there), n)) < 1e-6; }
+
+    double leaves_cone_at(const Solid& solid, std::uint32_t v, const Vec3& n) const {
+        double most = -1;
+        for (const auto& triangle : solid.triangles)
+            if (std::ranges::find(triangle, v) != triangle.end())
+                for (const std::uint32_t w : triangle)
+                    if (w != v)
+                        most = std::max(most, -dot(unit(view_.turned(solid.vertices[w] - solid.vertices[v])), n));
+        return most;
     }
 
     // Positive outside; by what is nearest. Of closed targets exact.
@@ -146,143 +142,37 @@ private:
         return dot(unit(p - at), unit(sum));
     }
 
-    const View& view_;
-    double margin_;
-    RayCaster caster_;
-};
-
-/// Of a's edges against b's, in b's frame.
-class Edges {
-public:
-    Edges(const View& view, double margin, bool told)
-        : view_(view), margin_(margin), least_(told || view.way() > 0.2 * view.size() ? 0.1 * view.size() : -1) {}
-
-    Expectation expect(const std::set<Key>& touching) const {
-        Expectation found;
-        const auto own = edges_of(view_.source.solid), other = edges_of(view_.target.solid);
-        const double way = view_.way();
-        for (const Edge& e : own)
-            for (const Edge& g : other) {
-                const Key key{e.number, g.number};
-                if (touching.contains(key) || !asked(e) || !asked(g)) continue;
-                bool sure = std::abs(way - margin_) > 1e-7;
-                const auto one = ask(e, g, way > margin_, sure);
-                if (one && sure) found.sure[key] = *one;
-                if (!sure) found.doubtful.insert(key);
-            }
-        return found;
-    }
-
-private:
-    bool asked(const Edge& e) const { return e.sharp && !e.concave && e.hides > least_; }
-
-    /// Of an edge at part t of the step.
-    struct Segment {
-        Vec3 from, along;
-    };
-    Segment place(const Edge& e, double t) const {
-        const auto at = [&](std::uint32_t v) {
-            const Vec3 p = view_.at_now(view_.source.solid.vertices[v]);
-            return p + t * (view_.at_then(view_.source.solid.vertices[v]) - p);
-        };
-        return {at(e.from), at(e.to) - at(e.from)};
-    }
-
-    // By how much n leaves the arc of the normals of the edge's faces; along: as the first face runs about it.
-    static double beyond(const Vec3& n, const Vec3& along, const Vec3& own, const Vec3* across) {
-        const double first = dot(n, cross(own, unit(along)));
-        return across ? std::max(first, -dot(n, cross(*across, unit(along)))) : std::max(first, -dot(n, own));
-    }
-
-    bool in_arcs(const Edge& e, const Edge& g, const Vec3& n, const Vec3& along, const Vec3& other, bool& sure) const {
+    void ask(const Edge& e, const Edge& g, std::vector<Place>& found) const {
         const Solid &source = view_.source.solid, &target = view_.target.solid;
-        const Vec3 e0 = view_.turned(source.face_normals[e.faces[0]]);
-        const Vec3 e1 = e.faces[1] == none ? Vec3{} : view_.turned(source.face_normals[e.faces[1]]);
-        const double by_e = beyond(-n, along, e0, e.faces[1] == none ? nullptr : &e1);
-        const double by_g = beyond(n, other, target.face_normals[g.faces[0]],
-                                   g.faces[1] == none ? nullptr : &target.face_normals[g.faces[1]]);
-        for (const double by : {by_e, by_g})
-            if (std::abs(by - 0.1) < 1e-6) sure = false;
-        return by_e <= 0.1 && by_g <= 0.1;
+        const Vec3 p = view_.at_now(source.vertices[e.from]), along = view_.at_now(source.vertices[e.to]) - p;
+        const Vec3 q = target.vertices[g.from], other = target.vertices[g.to] - q;
+        const Vec3 x = cross(along, other);
+        const double whole = dot(x, x), sine = std::sqrt(whole) / (length(along) * length(other));
+        if (sine < 1e-3) return; // vertices see what is parallel
+        const double s = dot(cross(q - p, other), x) / whole, u = dot(cross(q - p, along), x) / whole;
+        const double within = std::min({s, 1 - s, u, 1 - u});
+        if (within < 0) return;
+        Vec3 n = unit((p + s * along) - (q + u * other));
+        const double gap = length((p + s * along) - (q + u * other));
+        if (gap > margin_ + tiny_ || gap < 10 * tiny_) return;
+        const double by = std::max(leaves_arc(source, e, -n, along, true), leaves_arc(target, g, n, other, false));
+        if (by > tolerance_) return;
+        const bool sure = by < -1e-4 && gap < margin_ - tiny_ && within > 1e-6 && sine > 2e-3;
+        found.push_back({true, e.number, g.number, n, gap, sure});
     }
 
-    // The parts of both lines where they are nearest; false unless within both.
-    static bool nearest(const Segment& e, const Segment& g, double& s, double& u, bool& sure) {
-        const Vec3 n = cross(e.along, g.along), apart = g.from - e.from;
-        const double whole = dot(n, n);
-        if (std::sqrt(whole) < 2e-3 * length(e.along) * length(g.along)) {
-            sure = false; // nearly parallel
-            return false;
-        }
-        s = dot(cross(apart, g.along), n) / whole;
-        u = dot(cross(apart, e.along), n) / whole;
-        for (const double part : {s, s - 1, u, u - 1})
-            if (std::abs(part) < 1e-6) sure = false;
-        return s >= 0 && s <= 1 && u >= 0 && u <= 1;
-    }
-
-    double volume(const Edge& e, const Segment& g, double t) const {
-        const Segment at = place(e, t);
-        return dot(cross(at.along, g.along), g.from - at.from);
-    }
-
-    // In parts of the step, by steps and halving.
-    std::vector<double> meetings(const Edge& e, const Segment& g) const {
-        constexpr int steps = 200;
-        std::vector<double> found;
-        double before = volume(e, g, 0);
-        for (int i = 0; i < steps; ++i) {
-            double low = double(i) / steps, high = double(i + 1) / steps;
-            const double after = volume(e, g, high);
-            if ((before < 0) != (after < 0)) {
-                for (int k = 0; k < 60; ++k) {
-                    const double middle = 0.5 * (low + high);
-                    ((volume(e, g, middle) < 0) == (before < 0) ? low : high) = middle;
-                }
-                found.push_back(0.5 * (low + high));
-            }
-            before = after;
-        }
-        return found;
-    }
-
-    std::optional<Expected> ask(const Edge& e, const Edge& g, bool moves, bool& sure) const {
-        const Solid& target = view_.target.solid;
-        const Segment now = place(e, 0), next = place(e, 1);
-        const Segment other{target.vertices[g.from], target.vertices[g.to] - target.vertices[g.from]};
-        const double perturbation = 3e-7 * view_.size();
-        double s = 0, u = 0;
-        const auto told = [&](const Vec3& n) {
-            const Vec3 point = now.from + s * now.along;
-            return Expected{std::max(0.0, dot(n, point - (other.from + u * other.along))), n, point};
+    double leaves_arc(const Solid& solid, const Edge& e, const Vec3& n, const Vec3& along, bool turn) const {
+        const auto normal = [&](int k) {
+            const Vec3& own = solid.face_normals[e.faces[k]];
+            return turn ? view_.turned(own) : own;
         };
-        for (const double t : moves ? meetings(e, other) : std::vector<double>()) {
-            const Segment then = place(e, t);
-            if (!nearest(then, other, s, u, sure)) continue;
-            const Vec3 way = (next.from - now.from) + s * (next.along - now.along);
-            Vec3 n = unit(cross(then.along, other.along));
-            if (dot(n, way) > 0) n = -n;
-            if (std::abs(dot(n, way)) < perturbation) sure = false;
-            if (!in_arcs(e, g, n, then.along, other.along, sure)) continue;
-            if (t < 1e-4 || t > 1 - 1e-4) sure = false;
-            return told(n);
-        }
-        if (moves && std::abs(volume(e, other, 0)) < perturbation * length(cross(now.along, other.along))) sure = false;
-        if (moves && std::abs(volume(e, other, 1)) < perturbation * length(cross(next.along, other.along)))
-            sure = false;
-        if (!nearest(now, other, s, u, sure)) return std::nullopt;
-        Vec3 n = unit(cross(now.along, other.along));
-        Vec3 out = target.face_normals[g.faces[0]];
-        if (g.faces[1] != none) out = out + target.face_normals[g.faces[1]];
-        if (dot(n, out) < 0) n = -n;
-        const double gap = dot(n, (now.from + s * now.along) - (other.from + u * other.along));
-        if (std::abs(gap) < perturbation || std::abs(gap - margin_) < perturbation) sure = false;
-        if (!(gap >= 0 && gap <= margin_) || !in_arcs(e, g, n, now.along, other.along, sure)) return std::nullopt;
-        return told(n);
+        const double first = dot(n, cross(normal(0), unit(along)));
+        return e.faces[1] == none ? std::max(first, -dot(n, normal(0)))
+                                  : std::max(first, -dot(n, cross(normal(1), unit(along))));
     }
 
     const View& view_;
-    double margin_, least_;
+    double margin_, tolerance_, tiny_;
 };
 
 } // namespace raycontact::reference

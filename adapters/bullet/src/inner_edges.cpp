@@ -4,6 +4,7 @@
 #include <bullet_mesh.h>
 
 #include <algorithm>
+#include <span>
 
 namespace raycontact::bullet {
 
@@ -23,8 +24,28 @@ btScalar away_from(const btVector3& p, const btVector3& from, const btVector3& t
     return (p - from - at * along).length2();
 }
 
+/// Whether a triangle that shares no corner lies in the plane of another, at a point of its border: a T-junction.
+bool goes_on(const BulletMesh& mesh, std::span<const std::uint32_t> around, std::uint32_t t, const btVector3& point) {
+    const btVector3 face = normal_of(mesh, t);
+    return std::ranges::any_of(around, [&](std::uint32_t k) {
+        for (const int i : {0, 1, 2})
+            for (const int j : {0, 1, 2})
+                if (mesh.corner(k, i) == mesh.corner(t, j)) return false;
+        const btVector3 n = normal_of(mesh, k);
+        bool beside = btFabs(n.dot(face)) > is_face;
+        for (const int i : {0, 1, 2}) {
+            const btVector3 along = mesh.corner(k, i + 1) - mesh.corner(k, i);
+            beside =
+                beside && n.cross(along).dot(point - mesh.corner(k, i)) > -gContactBreakingThreshold * along.length();
+        }
+        return beside;
+    });
+}
+
 /// The direction out of the mesh at a point of a triangle's border, nearest to the one given. All in the mesh's frame.
-btVector3 allowed(const Leaf& leaf, std::uint32_t t, const btVector3& point, const btVector3& out) {
+/// around: the triangles near the point.
+btVector3 allowed(const Leaf& leaf, std::span<const std::uint32_t> around, std::uint32_t t, const btVector3& point,
+                  const btVector3& out) {
     const BulletMesh& mesh = *leaf.converted.in_bullet;
     const btVector3 face = normal_of(mesh, t);
     const btScalar side = face.dot(out) < 0 ? btScalar(-1) : btScalar(1);
@@ -36,7 +57,7 @@ btVector3 allowed(const Leaf& leaf, std::uint32_t t, const btVector3& point, con
             < away_from(point, mesh.corner(t, edge), mesh.corner(t, edge + 1)))
             edge = k;
     const std::uint32_t across = leaf.converted.shape->neighbours()[t][static_cast<std::size_t>(edge)];
-    if (across == Shape::no_triangle) return out;
+    if (across == Shape::no_triangle) return goes_on(mesh, around, t, point) ? own : out;
     const btVector3 other = side * normal_of(mesh, across);
     // Away from the triangle, over the edge.
     const btVector3 beyond = (mesh.corner(t, edge + 1) - mesh.corner(t, edge)).cross(face).normalized();
@@ -59,7 +80,7 @@ void leave_inner_edges(btPersistentManifold& manifold, const Leaf& leaf, bool me
         const auto t = std::ranges::find(triangles, number, [&](std::uint32_t k) { return numbers[k]; });
         if (t == triangles.end()) continue;
         const btVector3 out = (mesh_is_0 ? -p.m_normalWorldOnB : p.m_normalWorldOnB) * leaf.pose.getBasis();
-        const btVector3 normal = allowed(leaf, *t, point, out);
+        const btVector3 normal = allowed(leaf, triangles, *t, point, out);
         if (normal == out) continue;
         const btVector3 in_world = leaf.pose.getBasis() * normal;
         p.m_distance1 *= btMax(btScalar(0), normal.dot(out));

@@ -142,7 +142,13 @@ class Contacts:
         vertex = source << np.uint64(62) | own
         edges = np.uint64(2 << 62) | one << np.uint64(31) | other
         inside = np.uint64(3 << 62) | source << np.uint64(32) | own
-        return np.choose(data["kind"], (vertex, edges, inside)) if len(data) else np.empty(0, np.uint64)
+        vertex_face = (
+            np.uint64(7 << 61)
+            | source << np.uint64(60)
+            | own << np.uint64(30)
+            | np.where(source == 0, other, one)
+        )
+        return np.choose(data["kind"], (vertex, edges, inside, vertex_face)) if len(data) else np.empty(0, np.uint64)
 
     @property
     def touching(self: _Self) -> _Self:

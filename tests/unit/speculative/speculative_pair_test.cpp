@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Speculative contacts of two boxes by hand: the gap below a corner, and a corner on its way. speculative_test of
 // property holds them against brute force.
-#include "speculative/speculative_pair.h"
+#include "speculative/vertex_search.h"
 
 #include "prepared_shape.h"
 #include "reference/meshes.h"
@@ -30,12 +30,14 @@ struct Boxes {
     }
 
     /// Of all vertices of the small one with all faces of the large one near.
-    std::vector<FeatureContact> found(double margin, std::span<const std::uint32_t> touching = {}) const {
+    std::vector<FeatureContact> found(double margin, std::span<const std::uint32_t> lower = {}) const {
         std::vector<NearEdge> near;
         for (std::uint32_t v = 0; v < small->vertices().size(); ++v)
             for (std::uint32_t f = 0; f < large->triangles().size(); ++f) near.push_back({v, f, 0});
+        std::vector<kernels::LocalContact> touching;
+        for (const std::uint32_t v : lower) touching.push_back({0, v, 0, 0, 1, {0, 0, 1}});
         std::vector<FeatureContact> contacts;
-        find_speculative_vertices(SpeculativePair(a, b, margin), {std::span(near), {}}, {touching, {}}, contacts);
+        VertexSearch().find(SpeculativePair(a, b, margin), {std::span(near), {}}, {std::span(touching), {}}, contacts);
         return contacts;
     }
 };
