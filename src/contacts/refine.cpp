@@ -17,9 +17,9 @@ std::uint32_t Refiner::refine(Contact& contact, const kernels::LocalContact& loc
         return nearest_of(p, target_.corner(face, 0), target_.corner(face, 1), target_.corner(face, 2));
     };
     const Vec3 p = transform_point(relative_, source_.point(local.vertex));
-    const Vec3 out = -1.0 * rotated(relative_.rotation, source_.vertex_normals[local.vertex]);
     const double to_hit = length(nearest_on(p, local.triangle).point - p);
-    const std::uint32_t face = nearest_exit(target_, p, out, {to_hit, local.triangle}).face;
+    const std::uint32_t face =
+        nearest_exit(target_, {p, source_, local.vertex, relative_.rotation}, {to_hit, local.triangle}).face;
     const NearestPoint nearest = nearest_on(p, face);
     const Vec3 off = nearest.point - p;
     const double depth = length(off);

@@ -2,6 +2,7 @@
 #include "shape/mesh_rays.h"
 
 #include "mesh/descent.h"
+#include "shape/around.h"
 
 #include <algorithm>
 #include <array>
@@ -184,11 +185,18 @@ NearestFace nearest_face(const ShapeData& mesh, const Vec3& point, double enough
     return found.face == NONE ? NearestFace() : found;
 }
 
-NearestFace nearest_exit(const ShapeData& mesh, const Vec3& point, const Vec3& out, const NearestFace& known) {
-    constexpr double sideways = 1e-6;
-    return nearest_of_faces(mesh, point, 0, known, [&](std::uint32_t face) {
+NearestFace nearest_exit(const ShapeData& mesh, const ForeignVertex& own, const NearestFace& known) {
+    // 3 degrees: a box that lies a little askew on another leaves by the top, not by a side near its corner.
+    constexpr double against = 0.05;
+    return nearest_of_faces(mesh, own.point, 0, known, [&](std::uint32_t face) {
         const Vec3 n = area_normal(mesh, face);
-        return dot(n, out) > sideways * length(n) && dot(n, mesh.corner(face, 0) - point) >= 0;
+        if (dot(n, mesh.corner(face, 0) - own.point) < 0) return false;
+        const Vec3 turned = rotated_back(own.rotation, n);
+        const double least = -against * length(n);
+        return any_triangle_at(own.source, own.vertex, [&](std::uint32_t t, std::uint32_t) {
+            const auto& m = own.source.face_normals[t];
+            return double(m.x) * turned.x + double(m.y) * turned.y + double(m.z) * turned.z < least;
+        });
     });
 }
 

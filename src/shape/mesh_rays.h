@@ -63,9 +63,17 @@ struct NearestFace {
 NearestFace nearest_face(const ShapeData& mesh, const Vec3& point, double enough,
                          double bound = std::numeric_limits<double>::infinity());
 
-/// The nearest of the faces by which a vertex at `point` can leave along `out`: they have it behind them and look along
-/// `out` (unit), by more than rounding. No farther than `known`, which is one that counts in any case.
-NearestFace nearest_exit(const ShapeData& mesh, const Vec3& point, const Vec3& out, const NearestFace& known);
+/// A vertex of another mesh, `source`, that is turned by `rotation`.
+struct ForeignVertex {
+    Vec3 point;
+    const ShapeData& source;
+    std::uint32_t vertex;
+    const std::array<double, 9>& rotation;
+};
+
+/// The nearest of the faces by which a vertex can leave: they have it behind them and look against a face at it, by a
+/// cosine above 0.05. No farther than `known`, which is one that counts in any case.
+NearestFace nearest_exit(const ShapeData& mesh, const ForeignVertex& own, const NearestFace& known);
 
 /// What of a triangle is nearest to a point.
 struct NearestPoint {

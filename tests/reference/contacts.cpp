@@ -25,9 +25,8 @@ struct Relative {
     Vec3 point(std::uint32_t v) const {
         return rotate_back(target_pose, rotate(source_pose, source.vertices[v]) + shift);
     }
-    Vec3 inward(std::uint32_t v) const {
-        return unit(rotate_back(target_pose, rotate(source_pose, -source.vertex_normals[v])));
-    }
+    Vec3 turned(const Vec3& v) const { return rotate_back(target_pose, rotate(source_pose, v)); }
+    Vec3 inward(std::uint32_t v) const { return unit(turned(-source.vertex_normals[v])); }
 };
 
 struct Bounds {
@@ -50,9 +49,18 @@ struct Exit {
     Vec3 off; ///< from the vertex to the nearest point
 };
 
-// The nearest of the triangle that was hit and of all that look along the ray and have the vertex behind them, by more
-// than `by` of 1 and of the diagonal.
-Exit exit_along(const Solid& target, const Vec3& p, const Vec3& inward, std::uint32_t hit, double by) {
+// In the target's frame, outward.
+std::vector<Vec3> normals_at(const Relative& relative, std::uint32_t vertex) {
+    std::vector<Vec3> normals;
+    for (std::uint32_t t = 0; t < relative.source.triangles.size(); ++t)
+        if (std::ranges::count(relative.source.triangles[t], vertex) > 0)
+            normals.push_back(relative.turned(relative.source.face_normals[t]));
+    return normals;
+}
+
+// The nearest of the triangle that was hit and of all that look against one of the vertex's own and have the vertex
+// behind them, by more than `by` of 1 and of the diagonal.
+Exit exit_of(const Solid& target, const Vec3& p, const std::vector<Vec3>& own, std::uint32_t hit, double by) {
     const auto off = [&](std::uint32_t t) {
         const auto& [a, b, c] = target.triangles[t];
         return closest_on_triangle(p, target.vertices[a], target.vertices[b], target.vertices[c]) - p;
@@ -60,8 +68,8 @@ Exit exit_along(const Solid& target, const Vec3& p, const Vec3& inward, std::uin
     Exit best{hit, off(hit)};
     for (std::uint32_t t = 0; t < target.triangles.size(); ++t) {
         const Vec3 n = target.face_normals[t];
-        if (!(dot(n, inward) > 1e-6 + by)
-            || !(dot(n, target.vertices[target.triangles[t][0]] - p) >= 0.01 * by * target.diagonal))
+        if (!(dot(n, target.vertices[target.triangles[t][0]] - p) >= 0.01 * by * target.diagonal)
+            || std::ranges::none_of(own, [&](const Vec3& m) { return dot(n, m) < -0.05 - by; }))
             continue;
         const Vec3 to = off(t);
         if (dot(to, to) < dot(best.off, best.off)) best = {t, to};
@@ -96,11 +104,12 @@ std::vector<CastRay> cast_all(const Solid& source, const Pose& source_pose, cons
             if (direction == Direction::weighted) ray.weight = source.vertex_areas[v];
             ray.least_depth = ray.depth;
             if (direction == Direction::refined) {
-                const Exit way = exit_along(target, origin, inward, hit.triangle, 1e-7);
+                const std::vector<Vec3> own = normals_at(relative, v);
+                const Exit way = exit_of(target, origin, own, hit.triangle, 1e-7);
                 ray.triangle = way.triangle;
                 ray.depth = length(way.off);
                 ray.normal = rotate(target_pose, unit(way.off));
-                ray.least_depth = length(exit_along(target, origin, inward, hit.triangle, -1e-7).off);
+                ray.least_depth = length(exit_of(target, origin, own, hit.triangle, -1e-7).off);
             }
         }
         rays.push_back(ray);
