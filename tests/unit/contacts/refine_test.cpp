@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Direction `refined` where the face that a ray meets is not the exit. agreement_test holds it against brute force.
 #include "reference/meshes.h"
+#include "reference/random.h"
 #include "reference/vector.h"
 
 #include <raycontact/collide.h>
@@ -55,17 +56,21 @@ TEST(Refined, LeavesByTheNearerSlopeOfARidge) {
     EXPECT_EQ(refined[0].ray_length, reprojected[0].ray_length);
 }
 
-// A corner is 1 mm below the top of the other cube, and 0.2 mm from its sides: by these it must not leave.
+// A corner is 1 mm below the top of the other cube, and 0.2 mm from its sides: by these it must not leave, nor where
+// the cube is turned by a degree or two.
 TEST(Refined, ACubeOnACubeLeavesUpwards) {
     const Mesh cube = box_mesh({0.5, 0.5, 0.5});
-    Pose pose;
-    pose.translation = {0.0002, 0.0002, 0.999};
-    const auto contacts = vertices_of(cube, pose, cube, Direction::refined);
-    ASSERT_FALSE(contacts.empty());
-    for (const Contact& contact : contacts) {
-        EXPECT_NEAR(contact.normal.z, -1, 1e-6);
-        EXPECT_NEAR(contact.depth, 0.001, 1e-6);
-    }
+    for (const double askew : {0.0, 1e-4, 1e-3, 0.01, 0.03})
+        for (const Vec3& axis : {Vec3{0, 0, 1}, Vec3{0, 0, -1}}) {
+            Pose pose = small_rotation(axis, askew);
+            pose.translation = Vec3{-0.4998, -0.4998, 0.499} - transform_point(pose, {-0.5, -0.5, -0.5});
+            const auto contacts = vertices_of(cube, pose, cube, Direction::refined);
+            ASSERT_FALSE(contacts.empty());
+            for (const Contact& contact : contacts) {
+                EXPECT_NEAR(contact.normal.z, -1, 1e-6);
+                EXPECT_NEAR(contact.depth, 0.001, 1e-6);
+            }
+        }
 }
 
 } // namespace
