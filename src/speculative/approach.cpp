@@ -56,6 +56,7 @@ std::optional<Approach> Approaches::first_met() const {
         if (volume == 0) continue;
         const double at = (u * dot(p, way) + v * dot(q, way) + w * dot(r, way)) / (volume * size * size);
         if (at < -perturbation_ / size || at > first || (at == first && near.face > face)) continue;
+        if (!is_listed(from_ + at * way)) continue;
         first = at;
         face = near.face;
     }
@@ -63,6 +64,12 @@ std::optional<Approach> Approaches::first_met() const {
     const Vec3 out = unit(area_normal(target_, face)), corner = target_.corner(face, 0);
     if (!(dot(way, out) < 0)) return std::nullopt;
     return stopped({face, out, dot(from_ - corner, out), std::max(0.0, first)}, from_ + first * way);
+}
+
+// Whether every list of faces has what lies at a point.
+bool Approaches::is_listed(const Vec3& point) const {
+    if (from_ == way_[0] && to_ == way_[1]) return true;
+    return length(point - nearest_of(point, way_[0], way_[1], way_[1]).point) <= margin_;
 }
 
 // Of the places around: an edge is one with both its faces, a corner with all that it shares an edge with.
@@ -90,7 +97,7 @@ void Approaches::add_near(std::vector<Approach>& found) const {
         const NearestPoint point = nearest_of(from_, a, b, c);
         const Vec3 off = from_ - point.point, own = unit(area_normal(target_, face));
         const double gap = length(off);
-        if (gap > margin_ || !is_nearest(face, point)) continue;
+        if (gap > margin_ || !is_listed(point.point) || !is_nearest(face, point)) continue;
         Vec3 normal = own;
         if (point.edges == 0) {
             if (dot(off, own) < 0) continue;

@@ -26,10 +26,17 @@ inline constexpr double glancing = 0.25;
 /// The target's near features that stop a vertex, one after the other (docs/internals/speculative.md).
 class Approaches {
 public:
-    /// faces: what the vertex may come near. from, to: where it is, and will be at the next step.
+    /// faces: at least all within the margin of the vertex's straight way, `from` where it is, `to` where it will be at
+    /// the next step. Others do not count.
     Approaches(const ShapeData& target, std::span<const NearEdge> faces, const Vec3& from, const Vec3& to,
                double margin, double perturbation)
-        : target_(target), faces_(faces), from_(from), to_(to), margin_(margin), perturbation_(perturbation) {}
+        : target_(target), faces_(faces), from_(from), to_(to), way_{from, to}, margin_(margin),
+          perturbation_(perturbation) {}
+    /// Asks of another way, of the same faces.
+    void ask_of(const Vec3& from, const Vec3& to) {
+        from_ = from;
+        to_ = to;
+    }
 
     /// What the first face on the way says, if the vertex comes from outside: from a perturbation behind, so that one
     /// on the surface counts.
@@ -43,11 +50,13 @@ public:
 
 private:
     Approach stopped(const Approach& stops, const Vec3& at) const;
+    bool is_listed(const Vec3& point) const;
     bool is_nearest(std::uint32_t face, const NearestPoint& point) const;
 
     const ShapeData& target_;
     std::span<const NearEdge> faces_;
     Vec3 from_, to_;
+    std::array<Vec3, 2> way_; ///< that the faces are of
     double margin_, perturbation_;
 };
 

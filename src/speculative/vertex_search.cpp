@@ -68,14 +68,13 @@ void VertexSearch::find(const SpeculativePair& pair, Side side, std::uint32_t ve
                         const kernels::LocalContact* touches, std::vector<FeatureContact>& found) {
     const OneWay& body = pair.bodies[static_cast<std::size_t>(side)];
     const Vec3 point = body.source.point(vertex), p = transform_point(body.now, point);
-    Vec3 from = p, to = transform_point(body.next, point);
+    const Vec3 to = transform_point(body.next, point);
+    Approaches approaches(body.target, faces, p, to, pair.margin, pair.perturbation);
     if (touches != nullptr) {
         const Vec3 out = normal_of(*touches);
         const double depth = double(touches->distance) * double(touches->facing) + 2 * pair.perturbation;
-        from = from + depth * out;
-        to = to + std::max(0.0, depth - dot(out, to - p)) * out;
+        approaches.ask_of(p + depth * out, to + std::max(0.0, depth - dot(out, to - p)) * out);
     }
-    const Approaches approaches(body.target, faces, from, to, pair.margin, pair.perturbation);
     approaches_.clear();
     const auto met = body.moves ? approaches.first_met() : std::nullopt;
     if (met) approaches_.push_back(*met);

@@ -151,7 +151,7 @@ void expect_rest(const std::vector<Row>& found) {
     const Row& best = found[1];
     EXPECT_LT(best.shake, 0.2);
     EXPECT_LT(best.speed_off, 10);
-    for (const std::size_t row : {0, 5, 6}) EXPECT_LT(best.piles.speed, found[row].piles.speed / 2) << names[row];
+    for (const std::size_t row : {0, 5, 6}) EXPECT_LT(best.piles.speed, found[row].piles.speed) << names[row];
     EXPECT_GT(found[4].speed_off, 100);
     EXPECT_LT(found[7].shake, 0.2);
 }
@@ -163,7 +163,7 @@ TEST(Recommend, MeshesComeToRest) {
     for (const Row& row : found) EXPECT_LT(row.shake, 0.01);
     EXPECT_LT(found[2].piles.speed, found[0].piles.speed / 2);
     EXPECT_LT(found[2].piles.deepest, found[1].piles.deepest / 2);
-    EXPECT_LT(found[1].piles.deepest, found[3].piles.deepest / 1.15);
+    EXPECT_LT(found[1].piles.deepest, found[3].piles.deepest / 1.1);
 }
 
 TEST(Recommend, MeshesComeToRestWithoutSpeculativeContacts) {

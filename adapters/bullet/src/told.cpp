@@ -33,6 +33,11 @@ btVector3 off_straight(const btCollisionObject& object, const btVector3& point, 
     return quatRotate(btQuaternion(turn / angle, angle), arm) - arm - turn.cross(arm);
 }
 
+btVector3 velocity_of(const btCollisionObject& object) {
+    const btRigidBody* body = btRigidBody::upcast(&object);
+    return body ? body->getLinearVelocity() : btVector3(0, 0, 0);
+}
+
 } // namespace
 
 void combine_materials(btManifoldPoint& p, const btCollisionObject* a, const btCollisionObject* b) {
@@ -63,7 +68,10 @@ void straighten(btManifoldPoint& point, const btCollisionObject& a, const btColl
     if ((point.m_contactPointFlags & flag_turned) != 0) return;
     const btVector3 off =
         off_straight(a, point.m_positionWorldOnA, seconds) - off_straight(b, point.m_positionWorldOnB, seconds);
-    const btScalar away = off.dot(point.m_normalWorldOnB), gap = point.m_distance1;
+    const btVector3& normal = point.m_normalWorldOnB;
+    const btScalar away = off.dot(normal), gap = point.m_distance1;
+    // What falls faster is stopped by the point, and turns on otherwise.
+    if ((velocity_of(b) - velocity_of(a)).dot(normal) * seconds > btFabs(away)) return;
     point.m_distance1 = gap > 0 ? btMax(btScalar(0), gap + away) : gap + btMax(btScalar(0), away);
 }
 

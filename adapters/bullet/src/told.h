@@ -19,7 +19,8 @@ void combine_materials(btManifoldPoint& point, const btCollisionObject* a, const
 void turn_round(btManifoldPoint& point, btScalar depth, btScalar seconds);
 
 /// A point that is ahead, of bodies that turn: the solver takes its way for straight, along its velocity now; it is
-/// told the gap that such a way closes as the arc closes the true one.
+/// told the gap that such a way closes as the arc closes the true one. Not where the bodies come nearer by more than
+/// that without turning: such a hit changes how they turn.
 void straighten(btManifoldPoint& point, const btCollisionObject& a, const btCollisionObject& b, btScalar seconds);
 
 /// Of all points of soft objects, once the algorithms have run. Bullet undoes what is deeper than a threshold by moving

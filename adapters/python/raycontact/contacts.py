@@ -38,11 +38,13 @@ class FeatureKind(IntEnum):
     VERTEX: a vertex inside the other mesh; its ray met the closest face from inside (Hermann et al. 2008).
     EDGES: an edge of either body; they pass each other where the surfaces cross.
     INSIDE: the whole body lies inside the other mesh; its deepest vertex stands for it.
+    VERTEX_FACE: a vertex and a face that it is near or comes to, beside another contact of that vertex.
     """
 
     VERTEX = 0
     EDGES = 1
     INSIDE = 2
+    VERTEX_FACE = 3
 
 
 class Contacts:
@@ -143,10 +145,7 @@ class Contacts:
         edges = np.uint64(2 << 62) | one << np.uint64(31) | other
         inside = np.uint64(3 << 62) | source << np.uint64(32) | own
         vertex_face = (
-            np.uint64(7 << 61)
-            | source << np.uint64(60)
-            | own << np.uint64(30)
-            | np.where(source == 0, other, one)
+            np.uint64(7 << 61) | source << np.uint64(60) | own << np.uint64(30) | np.where(source == 0, other, one)
         )
         return np.choose(data["kind"], (vertex, edges, inside, vertex_face)) if len(data) else np.empty(0, np.uint64)
 
