@@ -298,7 +298,10 @@ void Objects::refresh_pinned(std::uint64_t dispatch) {
 void Objects::forget() {
     kinematics_.forget();
     mended_ = {};
-    for (const auto& [object, record] : pinned_) record->seen = Object::never;
+    for (const auto& [object, record] : pinned_) {
+        record->seen = Object::never;
+        record->unhindered.reset();
+    }
 }
 
 void Objects::pin(const btCollisionObject& object, std::shared_ptr<Object> record) {
