@@ -267,7 +267,7 @@ void count_all() {
     Placer placer;
     std::vector<Contact> placed;
     count_host("place_contacts,standard", local.all().size(),
-               [&] { placer.run(executor, Settings{}, small.steps[0], found.pairs, local, {}, placed); });
+               [&] { placer.run(executor, Direction::reprojected, small.steps[0], found.pairs, local, {}, placed); });
 
     const std::vector<Box> boxes = make_boxes(4096);
     count_host("broad_phase,boxes", boxes.size(), [&] {

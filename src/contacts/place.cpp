@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "contacts/place.h"
 
-#include "contacts/low_steps.h"
 #include "contacts/refine.h"
 #include "contacts/write_contact.h"
 #include "executor/row_slices.h"
@@ -70,11 +69,10 @@ void merge(std::span<const Contact> placed, Contact* own, std::size_t count) {
 
 } // namespace
 
-void Placer::run(Executor& executor, const Settings& settings, std::span<const PlacedBody> bodies,
+void Placer::run(Executor& executor, Direction direction, std::span<const PlacedBody> bodies,
                  std::span<const SlotPair> pairs, const ByPair<kernels::LocalContact>& by_pair,
                  std::span<const PlacedContacts> placed, std::vector<Contact>& contacts) {
     const std::span<const kernels::LocalContact> local = by_pair.all();
-    const Direction direction = settings.direction;
     const std::size_t more = placed.empty() ? 0 : placed.back().before + placed.back().contacts.size();
     contacts.resize(local.size() + more);
     order_.resize(local.size());
@@ -90,16 +88,9 @@ void Placer::run(Executor& executor, const Settings& settings, std::span<const P
         }
         std::sort(order_.begin() + begin, order_.begin() + end);
         for (std::uint32_t i = begin; i < end; ++i) place(to[i - begin], pair, local[order_[i] & 0xffffffff]);
-        const LowSteps steps(settings, source, target);
-        if (direction != Direction::refined && !steps.moves()) return;
+        if (direction != Direction::refined) return;
         const Refiner refiner(source, target);
-        for (std::uint32_t i = begin; i < end; ++i) {
-            const kernels::LocalContact& own = local[order_[i] & 0xffffffff];
-            Contact& contact = to[i - begin];
-            const std::uint32_t triangle =
-                direction == Direction::refined ? refiner.refine(contact, own) : own.triangle;
-            if (steps.moves()) steps.step_over(contact, own.vertex, triangle);
-        }
+        for (std::uint32_t i = begin; i < end; ++i) refiner.refine(to[i - begin], local[order_[i] & 0xffffffff]);
     };
     const auto pair_at = [&](std::size_t i) { return local[i].pair / 2; };
     const RowSlices slices{local.size(), 256};

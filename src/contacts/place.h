@@ -23,7 +23,7 @@ struct PlacedContacts {
 class Placer {
 public:
     /// local: the contacts of vertices. placed: in the order of their pairs; sorted in.
-    void run(Executor& executor, const Settings& settings, std::span<const PlacedBody> bodies,
+    void run(Executor& executor, Direction direction, std::span<const PlacedBody> bodies,
              std::span<const SlotPair> pairs, const ByPair<kernels::LocalContact>& local,
              std::span<const PlacedContacts> placed, std::vector<Contact>& contacts);
 

@@ -13,9 +13,8 @@ namespace raycontact {
 class Refiner {
 public:
     Refiner(const PlacedBody& source, const PlacedBody& target);
-    /// Sets triangle, normal and depth of a contact that was placed with direction `reprojected`. Returns the triangle,
-    /// as it is prepared.
-    std::uint32_t refine(Contact& contact, const kernels::LocalContact& local) const;
+    /// Sets triangle, normal and depth of a contact that was placed with direction `reprojected`.
+    void refine(Contact& contact, const kernels::LocalContact& local) const;
 
 private:
     const ShapeData &source_, &target_;

@@ -170,12 +170,8 @@ void EdgeStage::find(Workspace& work, Block& block, const Question& question, co
     work.ahead.clear();
     std::ranges::copy_if(speculative, std::back_inserter(work.ahead), std::not_fn(is_inside));
     if (settings.is_speculative() && asked.edges) {
-        const SpeculativePair speculative_pair(a, b, speculative_margin(settings, a, b));
-        const std::size_t touching = work.found.size();
-        find_speculative_edges(speculative_pair, near[0], in_contact ? least_hidden * smaller_size(a, b) : -1,
-                               work.found);
-        for (FeatureContact& found : std::span(work.found).first(touching))
-            if (found.kind == FeatureKind::edges) change_least(speculative_pair, found);
+        find_speculative_edges({a, b, speculative_margin(settings, a, b)}, near[0],
+                               in_contact ? least_hidden * smaller_size(a, b) : -1, work.found);
     }
     work.found.insert(work.found.end(), work.ahead.begin(), work.ahead.end());
     const auto first = static_cast<std::ptrdiff_t>(block.contacts.size());

@@ -62,7 +62,7 @@ void Part::end(std::vector<Contact>& contacts) {
 
 void Part::place(const Update& now, const Pipeline& found, std::vector<Contact>& contacts) {
     edges_.run(now, found.contacts(), found.speculative(), found.asked());
-    placer_.run(*executor_, *settings_, now.bodies, now.pairs, found.contacts(), edges_.found(), contacts);
+    placer_.run(*executor_, settings_->direction, now.bodies, now.pairs, found.contacts(), edges_.found(), contacts);
 }
 
 void Part::take_over(const PairList& pairs, std::vector<Contact>& contacts) {

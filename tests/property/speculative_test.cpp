@@ -274,16 +274,13 @@ TEST(Speculative, WhatMeetsIsStoppedThere) {
     EXPECT_LE(late, met / 250); // some hit a border of the face that they glance along
 }
 
-std::vector<Contact> deeper_than(std::span<const Contact> contacts, double depth) {
+std::vector<Contact> touching_alone(std::span<const Contact> contacts) {
     std::vector<Contact> found;
-    std::ranges::copy_if(contacts, std::back_inserter(found),
-                         [&](const Contact& c) { return double(c.depth) > depth; });
+    std::ranges::copy_if(contacts, std::back_inserter(found), [](const Contact& c) { return !c.is_speculative(); });
     return found;
 }
 
-// What is no deeper than the margin may say which way it moves least.
-TEST(Speculative, ChangesNothingThatIsDeepAndNoThreadChangesIt) {
-    constexpr double margin = 1e-3;
+TEST(Speculative, ChangesNothingThatTouchesAndNoThreadChangesIt) {
     const auto flights = random_flights(60, 2, 0.8);
     for (const Method method : {Method::standard, Method::certified, Method::iterative, Method::predictive}) {
         SCOPED_TRACE(to_string(method));
@@ -294,7 +291,6 @@ TEST(Speculative, ChangesNothingThatIsDeepAndNoThreadChangesIt) {
             settings.method = method;
             settings.execution.threads = std::max(1u, threads);
             settings.speculative = threads > 0;
-            if (threads > 0) settings.speculative_margin = margin;
             Scene scene(settings);
             const auto pairs = add_all(scene, beginnings(flights));
             for (std::size_t i = 0; i < flights.size(); ++i) {
@@ -306,9 +302,12 @@ TEST(Speculative, ChangesNothingThatIsDeepAndNoThreadChangesIt) {
             hash.add(0, found);
             hash_of_all.add(0, found);
             EXPECT_EQ(hash.hex() == hash_of_all.hex(), threads == 0);
-            if (threads == 0) without = deeper_than(found, margin);
+            if (threads == 0) without.assign(found.begin(), found.end());
             if (threads == 1) all.assign(found.begin(), found.end());
-            EXPECT_TRUE(same_bits(deeper_than(found, margin), without)) << threads;
+            EXPECT_TRUE(same_bits(touching_alone(found), without)) << threads;
+            double ray_length = 0;
+            for (const Contact& c : without) ray_length += double(c.ray_length);
+            EXPECT_EQ(scene.stats().details.ray_length, ray_length);
             EXPECT_TRUE(threads == 0 || same_bits(found, all)) << threads;
         }
         EXPECT_GT(without.size(), 1000u);

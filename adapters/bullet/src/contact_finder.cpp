@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <contact_finder.h>
 
+#include <raycontact/least_change.h>
+
 #include <LinearMath/btAabbUtil2.h>
 
 #include <algorithm>
@@ -27,8 +29,10 @@ void ContactFinder::take(PairState& state, const btDispatcherInfo& info) {
                 }
                 const BodyId a = pair.leaf0.body, b = pair.leaf1.body;
                 const bool swapped = a.slot > b.slot;
-                batch_.push_back({swapped ? Pair{b, a} : Pair{a, b}, &state, i, j, swapped,
-                                  manifolds_.patch_reach * pair.smaller_diagonal()});
+                batch_.push_back(
+                    {swapped ? Pair{b, a} : Pair{a, b}, &state, i, j, swapped,
+                     manifolds_.patch_reach * pair.smaller_diagonal(),
+                     scene_.settings().is_speculative() ? pair.margin(scene_.settings()) : btScalar(BT_LARGE_FLOAT)});
                 break;
             }
             case Work::plane:
@@ -120,6 +124,17 @@ void ContactFinder::tell_one_sided(const btCollisionObject& object, int child, c
                         "them through from behind; close it, or turn its faces to where bodies are"));
 }
 
+Contact ContactFinder::with_least_change(const Contact& contact, const Entry& entry) const {
+    const auto one = static_cast<std::size_t>(entry.child0), two = static_cast<std::size_t>(entry.child1);
+    const Leaf &leaf0 = entry.state->record0->leaves[one], &leaf1 = entry.state->record1->leaves[two];
+    if (!(leaf0.way + leaf1.way > entry.margin) || contact.is_speculative()) return contact;
+    const auto moving = [](const Leaf& leaf) {
+        return MovingShape{*leaf.converted.shape, to_pose(leaf.pose), to_pose(leaf.next)};
+    };
+    const Leaf &a = entry.swapped ? leaf1 : leaf0, &b = entry.swapped ? leaf0 : leaf1;
+    return least_change(contact, moving(a), moving(b), double(entry.margin));
+}
+
 // Contacts come sorted by pair: the batch is sorted the same way, by small keys, and both are walked once.
 void ContactFinder::run_batch() {
     order_.clear();
@@ -137,7 +152,8 @@ void ContactFinder::run_batch() {
         while (at != order_.end() && at->first < slots) ++at;
         if (at == order_.end() || at->first != slots) continue;
         const Entry& entry = batch_[at->second];
-        entry.state->candidates.push_back(candidate_of(contact, entry.child0, entry.child1, entry.swapped));
+        entry.state->candidates.push_back(
+            candidate_of(with_least_change(contact, entry), entry.child0, entry.child1, entry.swapped));
         entry.state->candidates.back().reach = entry.reach;
     }
 }

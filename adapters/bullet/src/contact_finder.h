@@ -41,7 +41,10 @@ private:
         int child0, child1;
         bool swapped; ///< the scene's first body is the manifold's body 1
         btScalar reach;
+        btScalar margin; ///< metres, of speculative contacts; without them larger than any way
     };
+    /// What sinks by the slop and slides over a seam is not stopped by it.
+    Contact with_least_change(const Contact& contact, const Entry& entry) const;
     bool apart(const LeafPair& pair) const;
     std::optional<HalfSpace> face_between(const LeafPair& pair) const;
     void add_plane(PairState& state, const LeafPair& pair, const HalfSpace& space);

@@ -24,12 +24,6 @@ ByPair<kernels::LocalContact> by_pair(Executor& executor, std::span<const kernel
 }
 
 // Pairs of so many contacts are sorted in different ways.
-Settings by(Direction direction) {
-    Settings settings;
-    settings.direction = direction;
-    return settings;
-}
-
 TEST(Placer, SortsTheContactsOfEachPair) {
     const std::shared_ptr<const Shape> shape = Shape::make(scenes::scene_model("gear", 902).mesh);
     const auto vertices = static_cast<std::uint32_t>(shape->data().mesh.vertices.size());
@@ -55,8 +49,7 @@ TEST(Placer, SortsTheContactsOfEachPair) {
     std::vector<Contact> contacts(local.size()); // as a step with edges leaves it to the next
     for (Contact& contact : contacts) contact.feature.kind = FeatureKind::edges;
     Placer placer;
-    placer.run(*opened.executor, by(Direction::ray), bodies, pairs, by_pair(*opened.executor, local, pairs), {},
-               contacts);
+    placer.run(*opened.executor, Direction::ray, bodies, pairs, by_pair(*opened.executor, local, pairs), {}, contacts);
 
     std::sort(local.begin(), local.end(),
               [](const auto& a, const auto& b) { return std::pair(a.pair, a.vertex) < std::pair(b.pair, b.vertex); });
@@ -107,7 +100,7 @@ TEST(Placer, PutsPlacedContactsBetweenThoseOfVertices) {
         before += others;
     }
     std::vector<Contact> contacts;
-    Placer().run(*opened.executor, by(Direction::ray), bodies, pairs, by_pair(*opened.executor, local, pairs), placed,
+    Placer().run(*opened.executor, Direction::ray, bodies, pairs, by_pair(*opened.executor, local, pairs), placed,
                  contacts);
     ASSERT_EQ(contacts.size(), local.size() + before);
     std::vector<std::pair<SlotPair, std::uint64_t>> found, expected;
@@ -132,8 +125,7 @@ TEST(Placer, MakesNormalDepthAndWeightByTheDirection) {
     const std::vector<kernels::LocalContact> local{{0, 7, 3, 1, 0.5f, {1, 0, 0}}, {1, 9, 3, 1, 0.5f, {1, 0, 0}}};
     const auto place = [&](Direction direction) {
         std::vector<Contact> contacts;
-        Placer().run(*opened.executor, by(direction), bodies, pairs, by_pair(*opened.executor, local, pairs), {},
-                     contacts);
+        Placer().run(*opened.executor, direction, bodies, pairs, by_pair(*opened.executor, local, pairs), {}, contacts);
         return contacts;
     };
     using Normal = Vec3f;

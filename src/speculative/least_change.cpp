@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <raycontact/least_change.h>
+
+#include "contacts/write_contact.h"
+#include "speculative/approach.h"
+#include "speculative/edge_search.h"
+
+#include <algorithm>
+#include <array>
+
+namespace raycontact {
+
+namespace {
+
+PlacedBody placed(const MovingShape& body) {
+    return {&body.shape, 0, 0, body.now, centred_pose(body.shape, body.now), centred_pose(body.shape, body.next)};
+}
+
+// The first that the file counts so; NONE if there is none.
+std::uint32_t number_of(std::span<const std::uint32_t> file_index, std::uint32_t index) {
+    const auto at = std::ranges::lower_bound(file_index, index); // they rise
+    return at == file_index.end() || *at != index ? NONE : static_cast<std::uint32_t>(at - file_index.begin());
+}
+
+void of_vertex(Contact& contact, const SpeculativePair& pair) {
+    const bool from_a = contact.feature.source == Side::a;
+    const OneWay& body = pair.bodies[from_a ? 0 : 1];
+    const PlacedBody& target = from_a ? pair.b : pair.a;
+    const std::uint32_t vertex = number_of(body.source.mesh.vertex_index, contact.feature.source_index()),
+                        triangle = number_of(body.target.mesh.triangle_index, contact.feature.other_index());
+    if (!body.moves || vertex == NONE || triangle == NONE) return;
+    const Vec3 point = body.source.point(vertex), from = transform_point(body.now, point);
+    const Vec3 out = rotated_back(target.centred.rotation, (from_a ? -1.0 : 1.0) * Vec3(contact.normal));
+    const Approaches approaches(body.target, {}, from, transform_point(body.next, point), pair.margin,
+                                pair.perturbation);
+    const double depth = double(contact.depth);
+    const Approach best = approaches.least_change({triangle, out, -depth}, from + depth * out);
+    if (best.face == triangle || !(best.gap < 0)) return;
+    (from_a ? contact.feature.index_b : contact.feature.index_a) = body.target.mesh.triangle_index[best.face];
+    write_direction(contact, rotated(target.centred.rotation, best.normal), static_cast<float>(-best.gap));
+}
+
+void of_edges(Contact& contact, const SpeculativePair& pair) {
+    const auto edge = [](const ShapeData& shape, std::uint32_t index) {
+        const std::uint32_t triangle = number_of(shape.mesh.triangle_index, index / 3);
+        return triangle == NONE ? NONE : 3 * triangle + index % 3;
+    };
+    const Pose& frame = pair.b.centred;
+    FeatureContact found{Side::a,
+                         FeatureKind::edges,
+                         edge(pair.bodies[0].source, contact.feature.index_a),
+                         edge(pair.bodies[0].target, contact.feature.index_b),
+                         rotated_back(frame.rotation, contact.point_a - frame.translation),
+                         -1.0 * rotated_back(frame.rotation, Vec3(contact.normal)),
+                         double(contact.depth)};
+    if (found.index == NONE || found.other == NONE) return;
+    const Vec3 before = found.normal;
+    change_least(pair, found);
+    if (found.normal == before) return;
+    contact.point_a = transform_point(frame, found.point);
+    write_direction(contact, rotated(frame.rotation, found.normal), static_cast<float>(found.depth));
+}
+
+} // namespace
+
+Contact least_change(const Contact& contact, const MovingShape& a, const MovingShape& b, double margin) {
+    Contact changed = contact;
+    if (contact.is_speculative() || double(contact.depth) > margin) return changed;
+    const PlacedBody first = placed(a), second = placed(b);
+    const SpeculativePair pair(first, second, margin);
+    if (contact.feature.kind == FeatureKind::vertex) of_vertex(changed, pair);
+    if (contact.feature.kind == FeatureKind::edges) of_edges(changed, pair);
+    return changed;
+}
+
+} // namespace raycontact
