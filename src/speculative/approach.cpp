@@ -115,7 +115,7 @@ void Approaches::add_near(std::vector<Approach>& found) const {
 // the margin. So a step of the surface that is lower is no wall.
 Approach Approaches::least_change(const Approach& stops, const Vec3& at) const {
     const Vec3 way = to_ - from_;
-    double passed = -stops.gap - dot(stops.normal, way);
+    double passed = passed_by(stops.normal, stops.gap, way);
     if (!(passed > 0)) return stops;
     Approach best = stops;
     std::array<std::uint32_t, most_flush> flat{stops.face};
@@ -136,7 +136,7 @@ Approach Approaches::least_change(const Approach& stops, const Vec3& at) const {
             }
             const auto is_above = [&](std::uint32_t v) { return dot(target_.point(v) - a, own) > perturbation_; };
             if (std::ranges::any_of(target_.mesh.triangles[across], is_above)) continue; // it averts nothing
-            const double gap = dot(from_ - target_.corner(across, 0), n), past = -gap - dot(n, way);
+            const double gap = dot(from_ - target_.corner(across, 0), n), past = passed_by(n, gap, way);
             const bool is_beside = away <= margin_ || (past < glancing * passed && away <= margin_ + past);
             if (past < passed && gap > -margin_ && is_beside) {
                 passed = past;

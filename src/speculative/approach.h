@@ -6,6 +6,7 @@
 #include "pairs/near_edges.h"
 #include "shape/mesh_rays.h"
 
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <vector>
@@ -22,6 +23,10 @@ struct Approach {
 
 /// A motion glances along a face of which it passes less than this part of what it passes of another.
 inline constexpr double glancing = 0.25;
+/// By how much a motion passes a plane; of what is inside already, by how much it goes farther in.
+inline double passed_by(const Vec3& normal, double gap, const Vec3& way) {
+    return -std::max(0.0, gap) - dot(normal, way);
+}
 
 /// The target's near features that stop a vertex, one after the other (docs/internals/speculative.md).
 class Approaches {

@@ -98,7 +98,7 @@ Edge edge_of_a(const OneWay& body, std::uint32_t number) {
 // is above it as a whole, or below by no more than the margin; and ends within the margin, or glances along it.
 void change_least(FeatureContact& contact, const Edge& edge, const Edge& other, const Places& at, double margin) {
     const Vec3 way = edge.way(at[0]);
-    double passed = contact.depth - dot(contact.normal, way);
+    double passed = passed_by(contact.normal, -contact.depth, way);
     if (!(passed > 0)) return;
     const auto ask = [&](const Vec3& n, const Places& gaps, const Places& past, const Edge& ends) {
         const std::size_t k = past[0] > past[1] ? 0 : 1;
@@ -112,12 +112,12 @@ void change_least(FeatureContact& contact, const Edge& edge, const Edge& other, 
     };
     for (const Vec3& n : other.normals) {
         const auto gap = [&](std::size_t k) { return dot(n, edge.ends[k] - other.ends[0]); };
-        const auto past = [&](std::size_t k) { return -gap(k) - dot(n, edge.ways[k]); };
+        const auto past = [&](std::size_t k) { return passed_by(n, gap(k), edge.ways[k]); };
         ask(n, {gap(0), gap(1)}, {past(0), past(1)}, edge);
     }
     for (const Vec3& n : edge.normals) {
         const auto gap = [&](std::size_t k) { return dot(n, other.ends[k] - edge.ends[0]); };
-        const auto past = [&](std::size_t k) { return dot(n, way) - gap(k); };
+        const auto past = [&](std::size_t k) { return passed_by(-1.0 * n, gap(k), way); };
         ask(-1.0 * n, {gap(0), gap(1)}, {past(0), past(1)}, other);
     }
 }

@@ -106,13 +106,13 @@ TEST(Forget, MeshesRepeatAsInAFreshWorld) {
     for (TestWorld* one : {w.get(), fresh.get()}) one->world.getDispatchInfo().m_deterministicOverlappingPairs = true;
     run(*w, 0, 70);
     const std::vector<Saved> saved = save(*w);
-    run(*w, 70, 130);
+    run(*w, 70, 90);
     const std::vector<Saved> went_on = save(*w);
     load(*w, saved);
     w->dispatcher.forget(w->world);
-    run(*w, 70, 130);
+    run(*w, 70, 90);
     load(*fresh, saved);
-    run(*fresh, 70, 130);
+    run(*fresh, 70, 90);
     EXPECT_TRUE(same(save(*w), save(*fresh)));
     EXPECT_FALSE(same(save(*w), went_on)) << "else nothing is shown";
 }
