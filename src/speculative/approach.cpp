@@ -16,10 +16,8 @@ constexpr double flush = 0.9999;
 // So many flush faces are looked at for a step of the surface.
 constexpr std::size_t most_flush = 64;
 
-Box box_of(const Vec3& p, const Vec3& q, double margin) {
-    const Vec3 grown{margin, margin, margin};
-    return {least(p, q) - grown, most(p, q) + grown};
-}
+// A direction may leave a vertex's normal cone by this, of a length; and the vertex looks at the target at all.
+constexpr double cone = 0.1, sideways = 1e-6;
 
 // Of NearestPoint::edges: the corner of two, and the one edge.
 std::uint32_t corner_of(std::uint32_t edges) {
@@ -38,6 +36,30 @@ Vec3 border_normal(const ShapeData& mesh, std::uint32_t face, std::uint32_t edge
 }
 
 } // namespace
+
+Approaches::Approaches(const SpeculativePair& pair, Side side, std::uint32_t vertex, std::span<const NearEdge> faces)
+    : body_(pair.bodies[static_cast<std::size_t>(side)]), target_(body_.target), vertex_(vertex),
+      faces_(faces), way_{transform_point(body_.now, body_.source.point(vertex)),
+                          transform_point(body_.next, body_.source.point(vertex))},
+      from_(way_[0]), to_(way_[1]), margin_(pair.margin), perturbation_(pair.perturbation) {}
+
+void Approaches::leave(const Vec3& normal, double depth) {
+    const double out = depth + 2 * perturbation_;
+    from_ = way_[0] + out * normal;
+    to_ = way_[1] + std::max(0.0, out - dot(normal, way_[1] - way_[0])) * normal;
+}
+
+bool Approaches::reaches_farthest(const Approach& approach) const {
+    const ShapeData& source = body_.source;
+    const Vec3 p = source.point(vertex_), now = rotated_back(body_.now.rotation, approach.normal);
+    const Vec3 back =
+        approach.when > 0 ? part_of_turn(now, rotated_back(body_.next.rotation, approach.normal), approach.when) : now;
+    if (!(dot(source.vertex_normals[vertex_], back) < -sideways)) return false;
+    return !any_neighbour(source, vertex_, [&](std::uint32_t w) {
+        const Vec3 off = source.point(w) - p;
+        return dot(off, back) < -cone * length(off);
+    });
+}
 
 std::optional<Approach> Approaches::first_met() const {
     const Vec3 way = to_ - from_;
@@ -112,7 +134,7 @@ void Approaches::add_near(std::vector<Approach>& found) const {
 }
 
 // Of the faces beyond a convex edge of the flush ones, those count that the vertex is above, or below by no more than
-// the margin. So a step of the surface that is lower is no wall.
+// the margin, and comes to with nothing else. So a step of the surface that is lower is no wall.
 Approach Approaches::least_change(const Approach& stops, const Vec3& at) const {
     const Vec3 way = to_ - from_;
     double passed = passed_by(stops.normal, stops.gap, way);
@@ -138,9 +160,10 @@ Approach Approaches::least_change(const Approach& stops, const Vec3& at) const {
             if (std::ranges::any_of(target_.mesh.triangles[across], is_above)) continue; // it averts nothing
             const double gap = dot(from_ - target_.corner(across, 0), n), past = passed_by(n, gap, way);
             const bool is_beside = away <= margin_ || (past < glancing * passed && away <= margin_ + past);
-            if (past < passed && gap > -margin_ && is_beside) {
+            const Approach other{across, n, gap, stops.when};
+            if (past < passed && gap > -margin_ && is_beside && reaches_farthest(other)) {
                 passed = past;
-                best = {across, n, gap, stops.when};
+                best = other;
             }
         }
     return best;

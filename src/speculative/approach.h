@@ -28,20 +28,15 @@ inline double passed_by(const Vec3& normal, double gap, const Vec3& way) {
     return -std::max(0.0, gap) - dot(normal, way);
 }
 
-/// The target's near features that stop a vertex, one after the other (docs/internals/speculative.md).
+/// The target's near features that stop a vertex (docs/internals/speculative.md).
 class Approaches {
 public:
-    /// faces: at least all within the margin of the vertex's straight way, `from` where it is, `to` where it will be at
-    /// the next step. Others do not count.
-    Approaches(const ShapeData& target, std::span<const NearEdge> faces, const Vec3& from, const Vec3& to,
-               double margin, double perturbation)
-        : target_(target), faces_(faces), from_(from), to_(to), way_{from, to}, margin_(margin),
-          perturbation_(perturbation) {}
-    /// Asks of another way, of the same faces.
-    void ask_of(const Vec3& from, const Vec3& to) {
-        from_ = from;
-        to_ = to;
-    }
+    /// faces: at least all within the pair's margin of the vertex's straight way to the next step. Others do not count.
+    Approaches(const SpeculativePair& pair, Side side, std::uint32_t vertex, std::span<const NearEdge> faces);
+    /// Where the vertex is, target's centred frame.
+    const Vec3& point() const { return way_[0]; }
+    /// Asks of it where a contact puts it, now and at the next step. depth: metres along the target's normal.
+    void leave(const Vec3& normal, double depth);
 
     /// What the first face on the way says, if the vertex comes from outside: from a perturbation behind, so that one
     /// on the surface counts.
@@ -52,16 +47,20 @@ public:
     /// What averts a contact at a point of a face, and changes the motion least; the contact itself, or that of a face
     /// beside.
     Approach least_change(const Approach& stops, const Vec3& at) const;
+    /// Whether the vertex reaches farthest against an approach's normal, of all about it, when they meet.
+    bool reaches_farthest(const Approach& approach) const;
 
 private:
     Approach stopped(const Approach& stops, const Vec3& at) const;
     bool is_listed(const Vec3& point) const;
     bool is_nearest(std::uint32_t face, const NearestPoint& point) const;
 
+    const OneWay& body_;
     const ShapeData& target_;
+    std::uint32_t vertex_;
     std::span<const NearEdge> faces_;
-    Vec3 from_, to_;
-    std::array<Vec3, 2> way_; ///< that the faces are of
+    std::array<Vec3, 2> way_; ///< of the vertex, which the faces are of
+    Vec3 from_, to_;          ///< the way that is asked of
     double margin_, perturbation_;
 };
 

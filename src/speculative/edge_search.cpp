@@ -70,11 +70,6 @@ std::array<double, 2> meetings(const Edge& edge, const Edge& rests) {
     return {std::min(one, two), std::max(one, two)};
 }
 
-Box box_of(const Vec3& p, const Vec3& q, double margin) {
-    const Vec3 grown{margin, margin, margin};
-    return {least(p, q) - grown, most(p, q) + grown};
-}
-
 Edge edge_of(const ShapeData& shape, std::uint32_t number) {
     const auto [start, stop] = ends_of(shape, number);
     const auto [own, across] = faces_of(shape, number);

@@ -29,12 +29,10 @@ void of_vertex(Contact& contact, const SpeculativePair& pair) {
     const std::uint32_t vertex = number_of(body.source.mesh.vertex_index, contact.feature.source_index()),
                         triangle = number_of(body.target.mesh.triangle_index, contact.feature.other_index());
     if (!body.moves || vertex == NONE || triangle == NONE) return;
-    const Vec3 point = body.source.point(vertex), from = transform_point(body.now, point);
     const Vec3 out = rotated_back(target.centred.rotation, (from_a ? -1.0 : 1.0) * Vec3(contact.normal));
-    const Approaches approaches(body.target, {}, from, transform_point(body.next, point), pair.margin,
-                                pair.perturbation);
+    const Approaches approaches(pair, contact.feature.source, vertex, {});
     const double depth = double(contact.depth);
-    const Approach best = approaches.least_change({triangle, out, -depth}, from + depth * out);
+    const Approach best = approaches.least_change({triangle, out, -depth}, approaches.point() + depth * out);
     if (best.face == triangle || !(best.gap < 0)) return;
     (from_a ? contact.feature.index_b : contact.feature.index_a) = body.target.mesh.triangle_index[best.face];
     write_direction(contact, rotated(target.centred.rotation, best.normal), static_cast<float>(-best.gap));

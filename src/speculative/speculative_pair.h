@@ -13,6 +13,12 @@ inline Vec3 part_of_turn(const Vec3& from, const Vec3& to, double part) {
     return unit((1 - part) * from + part * to);
 }
 
+/// Of two points, and so far around.
+inline Box box_of(const Vec3& p, const Vec3& q, double around) {
+    const Vec3 grown{around, around, around};
+    return {least(p, q) - grown, most(p, q) + grown};
+}
+
 /// One body of a pair as the other sees it, in the other's centred frame.
 struct OneWay {
     const ShapeData &source, &target;

@@ -9,8 +9,6 @@ namespace raycontact {
 
 namespace {
 
-// A direction may leave a vertex's normal cone by this, of a length; and the vertex looks at the target at all.
-constexpr double cone = 0.1, sideways = 1e-6;
 // Planes whose normals' product is larger are one.
 constexpr double same_plane = 0.995;
 
@@ -21,19 +19,6 @@ void by_vertex(std::span<const NearEdge> near, Visit&& visit) {
         while (end < near.size() && near[end].edge == near[begin].edge) ++end;
         visit(near[begin].edge, near.subspan(begin, end - begin));
     }
-}
-
-// Whether a vertex reaches farthest against a target's normal, of all about it.
-bool reaches_farthest(const OneWay& body, std::uint32_t v, const Approach& approach) {
-    const ShapeData& source = body.source;
-    const Vec3 p = source.point(v), now = rotated_back(body.now.rotation, approach.normal);
-    const Vec3 back =
-        approach.when > 0 ? part_of_turn(now, rotated_back(body.next.rotation, approach.normal), approach.when) : now;
-    if (!(dot(source.vertex_normals[v], back) < -sideways)) return false;
-    return !any_neighbour(source, v, [&](std::uint32_t w) {
-        const Vec3 off = source.point(w) - p;
-        return dot(off, back) < -cone * length(off);
-    });
 }
 
 // Out of the target.
@@ -66,17 +51,11 @@ void VertexSearch::find(const SpeculativePair& pair, const NearEdges& near,
 // A vertex in contact is asked where its contact puts it, now and at the next step.
 void VertexSearch::find(const SpeculativePair& pair, Side side, std::uint32_t vertex, std::span<const NearEdge> faces,
                         const kernels::LocalContact* touches, std::vector<FeatureContact>& found) {
-    const OneWay& body = pair.bodies[static_cast<std::size_t>(side)];
-    const Vec3 point = body.source.point(vertex), p = transform_point(body.now, point);
-    const Vec3 to = transform_point(body.next, point);
-    Approaches approaches(body.target, faces, p, to, pair.margin, pair.perturbation);
-    if (touches != nullptr) {
-        const Vec3 out = normal_of(*touches);
-        const double depth = double(touches->distance) * double(touches->facing) + 2 * pair.perturbation;
-        approaches.ask_of(p + depth * out, to + std::max(0.0, depth - dot(out, to - p)) * out);
-    }
+    Approaches approaches(pair, side, vertex, faces);
+    if (touches != nullptr) approaches.leave(normal_of(*touches), double(touches->distance) * double(touches->facing));
     approaches_.clear();
-    const auto met = body.moves ? approaches.first_met() : std::nullopt;
+    const Vec3& p = approaches.point();
+    const auto met = pair.bodies[static_cast<std::size_t>(side)].moves ? approaches.first_met() : std::nullopt;
     if (met) approaches_.push_back(*met);
     approaches.add_near(approaches_);
     const std::size_t first = found.size();
@@ -86,7 +65,7 @@ void VertexSearch::find(const SpeculativePair& pair, Side side, std::uint32_t ve
         if (std::any_of(found.begin() + static_cast<std::ptrdiff_t>(first), found.end(),
                         [&](const FeatureContact& c) { return is_alike(c.normal); }))
             continue;
-        if (!reaches_farthest(body, vertex, one)) continue;
+        if (!approaches.reaches_farthest(one)) continue;
         const bool has_other = touches != nullptr || found.size() > first;
         found.push_back({side, has_other ? FeatureKind::vertex_face : FeatureKind::vertex, vertex, one.face, p,
                          one.normal, -one.gap, one.when});

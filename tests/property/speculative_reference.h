@@ -131,10 +131,10 @@ private:
         return most;
     }
 
-    // Positive outside; by what is nearest. Of closed targets exact.
+    // Positive outside, and on the outer side of what is nearest. Of closed targets the first is exact.
     double side_of(const Vec3& p, const Vec3& at) const {
         const Solid& target = view_.target.solid;
-        if (target.closed) return winding_number(target, p) < 0.5 ? 1 : -1;
+        if (target.closed && winding_number(target, p) > 0.5) return -1;
         Vec3 sum{};
         for (std::uint32_t t = 0; t < target.triangles.size(); ++t)
             if (length(at - nearest_of_triangle(target, t, at)) < 1e-9 * target.diagonal)

@@ -122,8 +122,8 @@ void expect_places(const Flight& f, std::span<const Contact> contacts, double ma
                 continue;
             }
             ++counts.missed;
-            std::printf("missed: %s %u, %u, gap %g\n", place.edges ? "edges" : "vertex", place.index, place.other,
-                        place.gap);
+            ADD_FAILURE() << (place.edges ? "edges " : "vertex ") << place.index << ", " << place.other
+                          << " missed, gap " << place.gap;
         }
         for (const Contact& c : contacts) {
             const bool of_edges = c.feature.kind == FeatureKind::edges;
@@ -197,7 +197,6 @@ TEST(Speculative, EveryNearestPlaceIsToldAndNothingElse) {
     std::printf("[ places   ] %zu told, %zu missed; %zu contacts right, %zu invented\n", counts.told, counts.missed,
                 counts.right, counts.invented);
     EXPECT_GT(counts.told, 3000u);
-    EXPECT_LE(counts.missed, counts.told / 1000);
 }
 
 /// The part of a way without a turn at which two surfaces meet first, above 1 if they do not: every vertex against
@@ -260,7 +259,7 @@ TEST(Speculative, WhatMeetsIsStoppedThere) {
             ++(meets < 1 ? met : free);
             if (meets < 1 - slack && stops > meets + slack) {
                 ++late;
-                std::printf("meets at %g, stopped at %g\n", meets, stops);
+                ADD_FAILURE() << "meets at " << meets << ", stopped at " << stops;
             }
             if (steep < meets - slack && steep < 1 - slack) {
                 ++early;
@@ -271,7 +270,6 @@ TEST(Speculative, WhatMeetsIsStoppedThere) {
     std::printf("[ ways     ] %zu meet, %zu do not; %zu stopped late, %zu early\n", met, free, late, early);
     EXPECT_GT(met, 1000u);
     EXPECT_GT(free, 1000u);
-    EXPECT_LE(late, met / 250); // some hit a border of the face that they glance along
 }
 
 std::vector<Contact> touching_alone(std::span<const Contact> contacts) {

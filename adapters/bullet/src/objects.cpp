@@ -129,7 +129,7 @@ void Objects::refresh(const btCollisionObject& object, Object& record, std::uint
     if (record.seen == dispatch && !record.leaves.empty() && !record.stale) return;
     if (!unchanged(object, record)) make_leaves(object, record);
     place_object(object, record);
-    if (ahead_ > 0 && !record.misplaced()) expect(object, record);
+    if (ahead_ > 0 && !record.misplaced()) expect(object, record, dispatch);
     record.seen = dispatch;
 }
 
@@ -232,7 +232,7 @@ void Objects::place_leaf(const btCollisionObject& object, Object& record, Leaf& 
 
 // As Bullet will move it if nothing new is in its way. The scene itself goes on with the motion of what Bullet gives no
 // velocity, and of one whose speed is beyond all bounds.
-void Objects::expect(const btCollisionObject& object, Object& record) {
+void Objects::expect(const btCollisionObject& object, Object& record, std::uint64_t dispatch) {
     const btRigidBody* body = btRigidBody::upcast(&object);
     if (body == nullptr) return;
     btTransform then;
@@ -245,12 +245,15 @@ void Objects::expect(const btCollisionObject& object, Object& record) {
     } else {
         const btVector3 own = body->getLinearVelocity(),
                         gain = ahead_ * body->getInvMass() * body->getLinearFactor() * body->getTotalForce();
-        // What held a body up in the last step holds it up in this one.
-        const bool is_held =
-            record.unhindered && (own - *record.unhindered).length2() > btScalar(0.25) * gain.length2();
-        record.unhindered = own + gain;
-        const btVector3 velocity = is_held ? own : own + gain;
-        btTransformUtil::integrateTransform(record.pose, velocity, body->getAngularVelocity(), ahead_, then);
+        if (record.expected != dispatch) { // a dispatch may ask twice
+            // What held a body up in the last step holds it up in this one.
+            record.is_held = record.expected != Object::never && record.expected + 1 == dispatch
+                             && (own - record.unhindered).length2() > btScalar(0.25) * gain.length2();
+            record.unhindered = own + gain;
+            record.expected = dispatch;
+        }
+        btTransformUtil::integrateTransform(record.pose, record.is_held ? own : own + gain, body->getAngularVelocity(),
+                                            ahead_, then);
     }
     for (Leaf& leaf : record.leaves) {
         if ((!leaf.body.valid() && leaf.kind != Kind::round && !leaf.unmet) || leaf.left_out()) continue;
@@ -300,7 +303,7 @@ void Objects::forget() {
     mended_ = {};
     for (const auto& [object, record] : pinned_) {
         record->seen = Object::never;
-        record->unhindered.reset();
+        record->expected = Object::never;
     }
 }
 

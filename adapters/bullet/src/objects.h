@@ -13,7 +13,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -50,9 +49,12 @@ struct Object {
     std::uint64_t seen = 0;                        ///< dispatch in which poses were last handed over, or `never`
     bool stale = false;                            ///< refresh() was called
     std::string fault;                             ///< why all of it is left out: its transform; empty: it is not
-    std::optional<btVector3> unhindered; ///< the velocity that its forces alone would give it by the next dispatch
 
     static constexpr std::uint64_t never = ~std::uint64_t{0};
+
+    std::uint64_t expected = never; ///< dispatch in which the next pose was last asked for, or `never`
+    btVector3 unhindered{0, 0, 0};  ///< the velocity that its forces alone would have given it by the one after that
+    bool is_held = false;           ///< something kept it from that
 
     bool misplaced() const { return !fault.empty(); }
 };
@@ -144,7 +146,7 @@ private:
     void drop_bodies(Object& record);
     void place_object(const btCollisionObject& object, Object& record);
     void place_leaf(const btCollisionObject& object, Object& record, Leaf& leaf, const Placement& whole);
-    void expect(const btCollisionObject& object, Object& record);
+    void expect(const btCollisionObject& object, Object& record, std::uint64_t dispatch);
 
     Scene& scene_;
     ConvexShapes convex_;
