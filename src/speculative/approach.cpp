@@ -134,11 +134,12 @@ void Approaches::add_near(std::vector<Approach>& found) const {
 }
 
 // Of the faces beyond a convex edge of the flush ones, those count that the vertex is above, or below by no more than
-// the margin, and comes to with nothing else. So a step of the surface that is lower is no wall.
+// the margin. So a step of the surface that is lower is no wall. What stands for a contact is one.
 Approach Approaches::least_change(const Approach& stops, const Vec3& at) const {
     const Vec3 way = to_ - from_;
     double passed = passed_by(stops.normal, stops.gap, way);
     if (!(passed > 0)) return stops;
+    const bool is_contact = reaches_farthest(stops);
     Approach best = stops;
     std::array<std::uint32_t, most_flush> flat{stops.face};
     std::size_t count = 1;
@@ -161,7 +162,7 @@ Approach Approaches::least_change(const Approach& stops, const Vec3& at) const {
             const double gap = dot(from_ - target_.corner(across, 0), n), past = passed_by(n, gap, way);
             const bool is_beside = away <= margin_ || (past < glancing * passed && away <= margin_ + past);
             const Approach other{across, n, gap, stops.when};
-            if (past < passed && gap > -margin_ && is_beside && reaches_farthest(other)) {
+            if (past < passed && gap > -margin_ && is_beside && (!is_contact || reaches_farthest(other))) {
                 passed = past;
                 best = other;
             }
