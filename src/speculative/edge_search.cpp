@@ -21,26 +21,43 @@ constexpr double least_sine = 1e-3;
 // shaken. Until they are so many perturbations deep, they are near.
 constexpr double perturbations_until_touching = 4.4;
 
-/// A sharp convex edge, where it is and how its ends move until the next step. The target's do not.
+/// A sharp edge, where it is and how its ends move until the next step. The target's do not.
 struct Edge {
     std::uint32_t number;
     std::array<Vec3, 2> ends, ways;
-    std::array<Vec3, 2> normals, turned; ///< of its faces, now and at the next step; a border's has one
-    bool border;
 
     Vec3 along(double t) const { return ends[1] - ends[0] + t * (ways[1] - ways[0]); }
     Vec3 point(double at) const { return ends[0] + at * (ends[1] - ends[0]); }
     Vec3 way(double at) const { return ways[0] + at * (ways[1] - ways[0]); }
-    Vec3 normal(std::size_t k, double t) const { return t > 0 ? part_of_turn(normals[k], turned[k], t) : normals[k]; }
 };
 
-// By how much a unit direction leaves the arc between the normals of an edge's faces; of a border the half plane above
-// its face. t: after this part of the step. along: the edge, unit, as its own face runs about it.
-double beyond_arc(const Edge& edge, double t, const Vec3& along, const Vec3& direction) {
-    const Vec3 own = edge.normal(0, t);
-    const double inward = dot(direction, cross(own, along));
-    return std::max(inward, -dot(direction, edge.border ? own : cross(edge.normal(1, t), along)));
-}
+/// The outward normals of an edge's faces, unit; a border has one.
+struct EdgeNormals {
+    std::array<Vec3, 2> of_faces;
+    bool border;
+
+    EdgeNormals(const ShapeData& shape, std::uint32_t edge) {
+        const auto [own, across] = faces_of(shape, edge);
+        border = across == NONE;
+        of_faces[0] = unit(area_normal(shape, own));
+        of_faces[1] = border ? of_faces[0] : unit(area_normal(shape, across));
+    }
+    /// Of the moving body's, after a part of the step, in the target's frame.
+    EdgeNormals turned(const OneWay& body, double t) const {
+        EdgeNormals there = *this;
+        for (Vec3& n : there.of_faces) {
+            const Vec3 now = rotated(body.now.rotation, n);
+            n = t > 0 ? part_of_turn(now, rotated(body.next.rotation, n), t) : now;
+        }
+        return there;
+    }
+    /// By how much a unit direction leaves the arc between them; of a border the half plane above its face. along: the
+    /// edge, unit, as its own face runs about it.
+    double beyond_arc(const Vec3& along, const Vec3& direction) const {
+        const double inward = dot(direction, cross(of_faces[0], along));
+        return std::max(inward, -dot(direction, border ? of_faces[0] : cross(of_faces[1], along)));
+    }
+};
 
 /// Where the lines of two edges are nearest, from 0 to 1 of each.
 using Places = std::array<double, 2>;
@@ -72,10 +89,7 @@ std::array<double, 2> meetings(const Edge& edge, const Edge& rests) {
 
 Edge edge_of(const ShapeData& shape, std::uint32_t number) {
     const auto [start, stop] = ends_of(shape, number);
-    const auto [own, across] = faces_of(shape, number);
-    const Vec3 n = unit(area_normal(shape, own));
-    const std::array normals{n, across == NONE ? n : unit(area_normal(shape, across))};
-    return {number, {shape.point(start), shape.point(stop)}, {}, normals, normals, across == NONE};
+    return {number, {shape.point(start), shape.point(stop)}, {}};
 }
 
 Edge edge_of_a(const OneWay& body, std::uint32_t number) {
@@ -83,34 +97,36 @@ Edge edge_of_a(const OneWay& body, std::uint32_t number) {
     for (std::size_t k = 0; k < 2; ++k) {
         const Vec3 end = std::exchange(edge.ends[k], transform_point(body.now, edge.ends[k]));
         if (body.moves) edge.ways[k] = transform_point(body.next, end) - edge.ends[k];
-        edge.turned[k] = rotated(body.next.rotation, edge.normals[k]);
-        edge.normals[k] = rotated(body.now.rotation, edge.normals[k]);
     }
     return edge;
 }
 
 // Of the faces of either edge, one that averts the contact and changes the motion less stands for it, if the other edge
 // is above it as a whole, or below by no more than the margin; and ends within the margin, or glances along it.
-void change_least(FeatureContact& contact, const Edge& edge, const Edge& other, const Places& at, double margin) {
+void change_least(const SpeculativePair& pair, FeatureContact& contact, const Edge& edge, const Edge& other,
+                  const Places& at) {
+    const OneWay& body = pair.bodies[0];
     const Vec3 way = edge.way(at[0]);
     double passed = passed_by(contact.normal, -contact.depth, way);
     if (!(passed > 0)) return;
     const auto ask = [&](const Vec3& n, const Places& gaps, const Places& past, const Edge& ends) {
         const std::size_t k = past[0] > past[1] ? 0 : 1;
         const double away = length(ends.ends[k] - ends.point(&ends == &edge ? at[0] : at[1]));
-        if (away > margin && past[k] > glancing * passed) return;
-        if (!(std::min(gaps[0], gaps[1]) > -margin) || !(past[k] < passed)) return;
+        if (away > pair.margin && past[k] > glancing * passed) return;
+        if (!(std::min(gaps[0], gaps[1]) > -pair.margin) || !(past[k] < passed)) return;
         passed = past[k];
         contact.point = &ends == &edge ? ends.ends[k] : ends.ends[k] + gaps[k] * n;
         contact.normal = n;
         contact.depth = -gaps[k];
     };
-    for (const Vec3& n : other.normals) {
+    const EdgeNormals of_b(body.target, other.number);
+    for (const Vec3& n : of_b.of_faces) {
         const auto gap = [&](std::size_t k) { return dot(n, edge.ends[k] - other.ends[0]); };
         const auto past = [&](std::size_t k) { return passed_by(n, gap(k), edge.ways[k]); };
         ask(n, {gap(0), gap(1)}, {past(0), past(1)}, edge);
     }
-    for (const Vec3& n : edge.normals) {
+    const EdgeNormals of_a = EdgeNormals(body.source, edge.number).turned(body, 0);
+    for (const Vec3& n : of_a.of_faces) {
         const auto gap = [&](std::size_t k) { return dot(n, other.ends[k] - edge.ends[0]); };
         const auto past = [&](std::size_t k) { return passed_by(-1.0 * n, gap(k), way); };
         ask(-1.0 * n, {gap(0), gap(1)}, {past(0), past(1)}, other);
@@ -126,16 +142,14 @@ public:
         for (std::size_t begin = 0, end = 0; begin < near.size(); begin = end) {
             const std::uint32_t number = near[begin].edge;
             while (end < near.size() && near[end].edge == number) ++end;
-            if (is_asked(body_.source, number)) find(edge_of_a(body_, number), near.subspan(begin, end - begin));
+            // An edge is asked with the lowest of its faces.
+            const ShapeData& a = body_.source;
+            if (is_sharp(a, number) && hidden_by(a, number) > least_ && is_convex(a, number))
+                find(edge_of_a(body_, number), near.subspan(begin, end - begin));
         }
     }
 
 private:
-    // An edge is asked with the lowest of its faces.
-    bool is_asked(const ShapeData& shape, std::uint32_t edge) const {
-        return is_sharp(shape, edge) && hidden_by(shape, edge) > least_ && is_convex(shape, edge);
-    }
-
     void find(const Edge& edge, std::span<const NearEdge> faces) {
         Box box = box_of(edge.ends[0], edge.ends[1], pair_.margin);
         const Box then = box_of(edge.ends[0] + edge.ways[0], edge.ends[1] + edge.ways[1], pair_.margin);
@@ -144,10 +158,9 @@ private:
             for (std::uint32_t k = 0; k < 3; ++k) {
                 const std::uint32_t number = 3 * one.face + k;
                 const ShapeData& b = body_.target;
-                if (!is_sharp(b, number)) continue; // nor if another face is lower
-                if (!box.touches(box_of(b.corner(one.face, k), b.corner(one.face, (k + 1) % 3), 0))) continue;
-                if (!is_asked(b, number) || touches(edge.number, number)) continue;
+                if (!is_sharp(b, number) || !(hidden_by(b, number) > least_)) continue; // nor if another face is lower
                 const Edge other = edge_of(b, number);
+                if (!box.touches(box_of(other.ends[0], other.ends[1], 0)) || touches(edge.number, number)) continue;
                 if (!body_.moves || !will_meet(edge, other)) find_near(edge, other);
             }
     }
@@ -158,9 +171,12 @@ private:
         });
     }
 
-    static bool is_in_arcs(const Edge& edge, const Edge& other, double t, const Vec3& along, const Vec3& n) {
-        return beyond_arc(other, 0, unit(other.along(0)), n) <= arc
-               && beyond_arc(edge, t, unit(along), -1.0 * n) <= arc;
+    // n: out of b, after a part t of the step.
+    bool is_in_arcs(const Edge& edge, const Edge& other, double t, const Vec3& n) const {
+        return is_convex(body_.target, other.number)
+               && EdgeNormals(body_.target, other.number).beyond_arc(unit(other.along(0)), n) <= arc
+               && EdgeNormals(body_.source, edge.number).turned(body_, t).beyond_arc(unit(edge.along(t)), -1.0 * n)
+                      <= arc;
     }
 
     bool will_meet(const Edge& edge, const Edge& other) {
@@ -172,7 +188,7 @@ private:
             const Vec3 n = unit(cross(along, other.along(0)));
             const double lean = dot(n, edge.way((*at)[0]));
             const Vec3 out = lean > 0 ? -1.0 * n : n;
-            if (lean == 0 || !is_in_arcs(edge, other, t, along, out)) continue;
+            if (lean == 0 || !is_in_arcs(edge, other, t, out)) continue;
             tell(edge, other, t, *at, out);
             return true;
         }
@@ -184,17 +200,21 @@ private:
         const auto at = nearest_within(edge.ends[0], along, other.ends[0], other.along(0));
         if (!at) return;
         Vec3 n = unit(cross(along, other.along(0)));
-        if (dot(n, other.normals[0] + other.normals[1]) < 0) n = -1.0 * n;
-        const double gap = dot(n, edge.point((*at)[0]) - other.point((*at)[1]));
-        if (gap >= -perturbations_until_touching * pair_.perturbation && gap <= pair_.margin
-            && is_in_arcs(edge, other, 0, along, n))
+        double gap = dot(n, edge.point((*at)[0]) - other.point((*at)[1]));
+        if (std::fabs(gap) > pair_.margin) return;
+        const std::array<Vec3, 2> normals = EdgeNormals(body_.target, other.number).of_faces;
+        if (dot(n, normals[0] + normals[1]) < 0) {
+            n = -1.0 * n;
+            gap = -gap;
+        }
+        if (gap >= -perturbations_until_touching * pair_.perturbation && is_in_arcs(edge, other, 0, n))
             tell(edge, other, 0, *at, n);
     }
 
     void tell(const Edge& edge, const Edge& other, double t, const Places& at, const Vec3& n) {
         const double gap = std::max(0.0, dot(n, edge.point(at[0]) - other.point(at[1])));
         FeatureContact contact{Side::a, FeatureKind::edges, edge.number, other.number, edge.point(at[0]), n, -gap, t};
-        change_least(contact, edge, other, at, pair_.margin);
+        change_least(pair_, contact, edge, other, at);
         contact.depth = std::min(0.0, contact.depth);
         found_.push_back(contact);
     }
@@ -216,7 +236,7 @@ void change_least(const SpeculativePair& pair, FeatureContact& contact) {
         const Vec3 along = e.along(0);
         return std::clamp(dot(p - e.ends[0], along) / dot(along, along), 0.0, 1.0);
     };
-    change_least(contact, edge, other, {at(edge, contact.point), at(other, contact.point)}, pair.margin);
+    change_least(pair, contact, edge, other, {at(edge, contact.point), at(other, contact.point)});
 }
 
 void find_speculative_edges(const SpeculativePair& pair, std::span<const NearEdge> near, double least,
