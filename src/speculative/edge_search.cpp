@@ -160,7 +160,7 @@ private:
                 const ShapeData& b = body_.target;
                 if (!is_sharp(b, number) || !(hidden_by(b, number) > least_)) continue; // nor if another face is lower
                 const Edge other = edge_of(b, number);
-                if (!box.touches(box_of(other.ends[0], other.ends[1], 0)) || touches(edge.number, number)) continue;
+                if (!box.touches(box_of(other.ends[0], other.ends[1], 0))) continue;
                 if (!body_.moves || !will_meet(edge, other)) find_near(edge, other);
             }
     }
@@ -196,10 +196,12 @@ private:
     }
 
     void find_near(const Edge& edge, const Edge& other) {
-        const Vec3 along = edge.along(0);
+        const Vec3 along = edge.along(0), x = cross(along, other.along(0));
+        const double volume = dot(x, other.ends[0] - edge.ends[0]);
+        if (volume * volume > pair_.margin * pair_.margin * dot(x, x)) return; // their lines are farther apart
         const auto at = nearest_within(edge.ends[0], along, other.ends[0], other.along(0));
         if (!at) return;
-        Vec3 n = unit(cross(along, other.along(0)));
+        Vec3 n = unit(x);
         double gap = dot(n, edge.point((*at)[0]) - other.point((*at)[1]));
         if (std::fabs(gap) > pair_.margin) return;
         const std::array<Vec3, 2> normals = EdgeNormals(body_.target, other.number).of_faces;
@@ -212,6 +214,7 @@ private:
     }
 
     void tell(const Edge& edge, const Edge& other, double t, const Places& at, const Vec3& n) {
+        if (touches(edge.number, other.number)) return;
         const double gap = std::max(0.0, dot(n, edge.point(at[0]) - other.point(at[1])));
         FeatureContact contact{Side::a, FeatureKind::edges, edge.number, other.number, edge.point(at[0]), n, -gap, t};
         change_least(pair_, contact, edge, other, at);
