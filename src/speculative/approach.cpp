@@ -41,8 +41,7 @@ Approaches::Approaches(const SpeculativePair& pair, Side side, std::uint32_t ver
     : body_(pair.bodies[static_cast<std::size_t>(side)]), target_(body_.target), vertex_(vertex),
       faces_(faces), way_{transform_point(body_.now, body_.source.point(vertex)),
                           transform_point(body_.next, body_.source.point(vertex))},
-      from_(way_[0]), to_(way_[1]), outward_(rotated(body_.now.rotation, body_.source.vertex_normals[vertex])),
-      margin_(pair.margin), perturbation_(pair.perturbation) {}
+      from_(way_[0]), to_(way_[1]), margin_(pair.margin), perturbation_(pair.perturbation) {}
 
 void Approaches::leave(const Vec3& normal, double depth) {
     const double out = depth + 2 * perturbation_;
@@ -119,8 +118,8 @@ void Approaches::add_near(std::vector<Approach>& found) const {
         if (!Box{least(a, least(b, c)), most(a, most(b, c))}.touches(within)) continue;
         // A direction in the cone of an edge or corner is in front of one of its faces.
         const Vec3 area = cross(b - a, c - a);
-        const double height = dot(from_ - a, area);
-        if (height < 0 || height * height > margin_ * margin_ * dot(area, area)) continue;
+        const double height = dot(from_ - a, area), reach = height < 0 ? perturbation_ : margin_;
+        if (height * height > reach * reach * dot(area, area)) continue;
         const NearestPoint point = nearest_of(from_, a, b, c);
         const Vec3 off = from_ - point.point;
         const double gap = length(off);
@@ -128,7 +127,6 @@ void Approaches::add_near(std::vector<Approach>& found) const {
         const bool is_border = point.edges != 0 && gap > perturbation_;
         if (is_border && !(dot(off, border_normal(target_, face, point.edges)) > 0)) continue;
         const Vec3 normal = is_border ? (1 / gap) * off : unit(area);
-        if (!(dot(outward_, normal) < 0)) continue; // another vertex is nearer
         found.push_back(stopped({face, normal, gap}, point.point));
     }
     std::ranges::sort(found.begin() + static_cast<std::ptrdiff_t>(first), found.end(), {},

@@ -61,7 +61,6 @@ private:
     std::span<const NearEdge> faces_;
     std::array<Vec3, 2> way_; ///< of the vertex, which the faces are of
     Vec3 from_, to_;          ///< the way that is asked of
-    Vec3 outward_;            ///< the vertex's normal
     double margin_, perturbation_;
 };
 
