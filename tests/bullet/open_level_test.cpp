@@ -2,6 +2,8 @@
 // Levels of games are open meshes, wound one way or the other. Bullet's convex shapes stand on them in any case.
 #include "test_world.h"
 
+#include <raycontact/bullet/recommend.h>
+
 #include <BulletCollision/CollisionShapes/btTriangleMesh.h>
 
 #include <gtest/gtest.h>
@@ -94,12 +96,11 @@ TEST(OpenLevel, NothingFastPasses) {
     }
 }
 
-// The cast sees faces alone: no edge between two triangles of the floor stops what slides over it.
+// No edge between two triangles of the floor stops what slides over it.
 TEST(OpenLevel, WhatSlidesGoesOn) {
     for (const Wound wound : {Wound::up, Wound::down}) {
         const auto mesh = level(wound);
         for (const auto& [name, make] : shapes) {
-            if (name == "cylinder") continue; // Bullet's own algorithm throws it up, with ConvexShapes::bullet as well
             TestWorld w;
             add_level(w, *mesh).setFriction(0);
             btRigidBody& body = w.add(make(), 1, at(-3.5, 0.1, 0.2));
@@ -110,6 +111,158 @@ TEST(OpenLevel, WhatSlidesGoesOn) {
             w.steps(18);
             EXPECT_NEAR(double(body.getWorldTransform().getOrigin().x()), 2.5, 0.1) << name;
             EXPECT_NEAR(double(body.getWorldTransform().getOrigin().z()), 0.2, 0.02) << name;
+        }
+    }
+}
+
+/// Two triangles: from `corner` along `one` and `two`.
+std::unique_ptr<btTriangleMesh> sheet(const btVector3& corner, const btVector3& one, const btVector3& two) {
+    auto mesh = std::make_unique<btTriangleMesh>();
+    mesh->addTriangle(corner, corner + one, corner + one + two);
+    mesh->addTriangle(corner, corner + one + two, corner + two);
+    return mesh;
+}
+
+// A fence, 1 m high: whatever comes down on its border, at any speed, lies on it, and is not pushed aside.
+TEST(OpenLevel, ABorderCarriesWhatComesDownOnIt) {
+    for (const bool turned : {false, true}) {
+        const btVector3 along = turned ? btVector3(-8, 0, 0) : btVector3(8, 0, 0);
+        const auto mesh = sheet(btVector3(turned ? 4 : -4, 0, 0), along, btVector3(0, 0, 1));
+        for (const auto& [name, make] : shapes) {
+            if (name == "ball" || name == "capsule") continue; // in closed form
+            for (const double speed : {0.0, 5.0, 20.0, 60.0}) {
+                TestWorld w;
+                add_level(w, *mesh);
+                btRigidBody& body = w.add(make(), 1, at(0.13, 0.07, 1.9 + speed / 60));
+                body.setAngularFactor(0);
+                body.setLinearVelocity(btVector3(0, 0, btScalar(-speed)));
+                double lowest = 9;
+                for (int i = 0; i < 120; ++i) {
+                    w.steps(1);
+                    lowest = std::min(lowest, double(body.getWorldTransform().getOrigin().z()));
+                }
+                const btVector3& end = body.getWorldTransform().getOrigin();
+                EXPECT_GT(lowest, 1.18) << name << " at " << speed;
+                EXPECT_NEAR(double(end.z()), 1.2, 0.003) << name << " at " << speed;
+                EXPECT_NEAR(double(end.y()), 0.07, 0.001) << name << " at " << speed;
+                EXPECT_LT(double(body.getLinearVelocity().length()), 0.005) << name << " at " << speed;
+            }
+        }
+    }
+}
+
+// A sheet that comes to the middle of a side is a wall, as thin as it is.
+TEST(OpenLevel, ABorderStopsWhatComesToItFromTheSide) {
+    const auto mesh = sheet(btVector3(0, -4, 0), btVector3(0, 8, 0), btVector3(8, 0, 0));
+    for (const auto& [name, make] : shapes) {
+        if (name == "ball" || name == "capsule") continue;
+        for (const double speed : {1.0, 5.0, 20.0, 60.0}) {
+            TestWorld w;
+            w.world.setGravity(btVector3(0, 0, 0));
+            add_level(w, *mesh).setFriction(0);
+            btRigidBody& body = w.add(make(), 1, at(-1 - speed / 60, 0.1, 0.03));
+            body.setAngularFactor(0);
+            body.setLinearVelocity(btVector3(btScalar(speed), 0, 0));
+            double farthest = -9;
+            for (int i = 0; i < static_cast<int>(60 * 1.5 / speed) + 60; ++i) {
+                w.steps(1);
+                farthest = std::max(farthest, double(body.getWorldTransform().getOrigin().x()));
+            }
+            EXPECT_NEAR(farthest, -0.2, 0.003 + 0.01 * speed / 60) << name << " at " << speed;
+            // A cylinder slides on along the side of its polygon that comes first.
+            if (name == "box") {
+                EXPECT_NEAR(double(body.getLinearVelocity().length()), 0, 1e-3) << speed;
+            }
+            EXPECT_NEAR(double(body.getWorldTransform().getOrigin().z()), 0.03, 0.001) << name << " at " << speed;
+        }
+    }
+}
+
+// From one sheet to another that is flush with it, by its border, and on over the last border: nothing is felt.
+TEST(OpenLevel, BordersOfFlushSheetsAreNoWalls) {
+    for (const double step : {0.0, 0.0002, -0.0002})
+        for (const Wound wound : {Wound::up, Wound::down}) {
+            const auto near = wound == Wound::up ? sheet(btVector3(-4, -1, 0), btVector3(4, 0, 0), btVector3(0, 2, 0))
+                                                 : sheet(btVector3(-4, -1, 0), btVector3(0, 2, 0), btVector3(4, 0, 0));
+            const auto far = sheet(btVector3(0, -1, btScalar(step)), btVector3(4, 0, 0), btVector3(0, 2, 0));
+            for (const auto& [name, make] : shapes) {
+                if (name == "ball" || name == "capsule") continue;
+                for (const double speed : {1.0, 5.0, 20.0}) {
+                    TestWorld w;
+                    add_level(w, *near).setFriction(0);
+                    add_level(w, *far).setFriction(0);
+                    btRigidBody& body = w.add(make(), 1, at(-1, 0.1, 0.2));
+                    bullet::recommend(w.world);
+                    w.steps(30);
+                    body.setLinearVelocity(btVector3(btScalar(speed), 0, 0));
+                    w.steps(static_cast<int>(60 * 2 / speed));
+                    EXPECT_NEAR(double(body.getLinearVelocity().x()), speed, 0.01 * speed) << name << ", step " << step;
+                    EXPECT_NEAR(double(body.getWorldTransform().getOrigin().z()), 0.2, 0.003) << name;
+                    EXPECT_LT(double(body.getAngularVelocity().length()), 0.02) << name << ", step " << step;
+                }
+            }
+        }
+}
+
+// A sheet smaller than what lies on it carries it by its border alone.
+TEST(OpenLevel, ASmallSheetCarriesALargeBox) {
+    for (const double side : {1.0, -1.0}) {
+        const auto mesh = sheet(btVector3(btScalar(-0.05), btScalar(-0.05), 0), btVector3(btScalar(0.1), 0, 0),
+                                btVector3(0, btScalar(0.1 * side), 0));
+        TestWorld w;
+        add_level(w, *mesh);
+        const double y = side > 0 ? 0 : -0.1;
+        const btRigidBody& body = w.add(shapes[0].second(), 1, at(0, y, 0.3));
+        w.steps(180);
+        EXPECT_NEAR(double(body.getWorldTransform().getOrigin().z()), 0.2, 0.003);
+        EXPECT_LT(double(body.getLinearVelocity().length()), 0.005);
+        EXPECT_GT(double(body.getWorldTransform().getBasis()[2][2]), 0.9999);
+    }
+}
+
+// What lies over the end of a sheet by less than half stays; by more, it tips.
+TEST(OpenLevel, WhatHangsOverABorderTipsByItsWeight) {
+    const auto mesh = sheet(btVector3(-4, -1, 0), btVector3(4, 0, 0), btVector3(0, 2, 0));
+    for (const double x : {-0.05, -0.01, 0.01, 0.05}) {
+        TestWorld w;
+        add_level(w, *mesh);
+        const btRigidBody& body = w.add(shapes[0].second(), 1, at(x, 0.1, 0.2));
+        w.steps(240);
+        EXPECT_EQ(double(body.getWorldTransform().getOrigin().z()) > 0.19, x < 0) << x;
+        if (x < 0) {
+            EXPECT_LT(double(body.getLinearVelocity().length()), 0.005) << x;
+        }
+    }
+}
+
+// A tray of five sheets in one mesh, wound inward or outward: what falls into it stays in it and comes to rest.
+TEST(OpenLevel, ATrayHoldsWhatFallsIntoIt) {
+    for (const bool inward : {true, false}) {
+        btTriangleMesh mesh;
+        const auto add = [&](const btVector3& a, const btVector3& one, const btVector3& two) {
+            const btVector3 b = a + one, c = a + one + two, d = a + two;
+            inward ? mesh.addTriangle(a, b, c) : mesh.addTriangle(a, c, b);
+            inward ? mesh.addTriangle(a, c, d) : mesh.addTriangle(a, d, c);
+        };
+        const btVector3 x(2, 0, 0), y(0, 2, 0), z(0, 0, 1), corner(-1, -1, 0);
+        add(corner, x, y);
+        add(corner, z, x);
+        add(corner, y, z);
+        add(corner + x, z, y);
+        add(corner + y, x, z);
+        TestWorld w;
+        add_level(w, mesh);
+        bullet::recommend(w.world, {.size = 0.4});
+        for (int i = 0; i < 12; ++i) {
+            btTransform pose = at(0.55 * (i % 3) - 0.55, 0.55 * (i / 3 % 2) - 0.3, 0.4 + 0.6 * (i / 6));
+            pose.setRotation(btQuaternion(btVector3(1, 2, btScalar(i)).normalized(), btScalar(i)));
+            w.add(shapes[i % 2 == 0 ? 0 : 3].second(), 1, pose);
+        }
+        w.steps(360);
+        for (std::size_t i = 1; i < w.bodies.size(); ++i) {
+            const btVector3& end = w.bodies[i]->getWorldTransform().getOrigin();
+            EXPECT_TRUE(btFabs(end.x()) < 1 && btFabs(end.y()) < 1 && end.z() > 0.15) << i << ", inward " << inward;
+            EXPECT_LT(double(w.bodies[i]->getLinearVelocity().length()), 0.1) << i << ", inward " << inward;
         }
     }
 }

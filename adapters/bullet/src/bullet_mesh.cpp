@@ -6,6 +6,7 @@
 
 #include <LinearMath/btAabbUtil2.h>
 
+#include <algorithm>
 #include <utility>
 
 namespace raycontact::bullet {
@@ -13,6 +14,13 @@ namespace raycontact::bullet {
 namespace {
 constexpr std::size_t exact_bounds = 1024;  ///< vertices; beyond that as many boxes
 constexpr std::size_t most_boxes = 1 << 16; ///< kept: at most some 10 MB
+/// Cosine from which on two triangles lie in one plane, and their distance there, of the edge's length.
+constexpr btScalar flat = btScalar(0.9999), flush = btScalar(1e-3);
+
+/// Not of length 1; whatever lies in its plane is.
+btVector3 area_of(const BulletMesh& mesh, std::uint32_t t) {
+    return (mesh.corner(t, 1) - mesh.corner(t, 0)).cross(mesh.corner(t, 2) - mesh.corner(t, 0));
+}
 } // namespace
 
 BulletMesh::BulletMesh(std::shared_ptr<const Shape> shape) : shape_(std::move(shape)), triangles_(shape_->triangles()) {
@@ -36,6 +44,39 @@ std::vector<std::uint32_t> BulletMesh::overlapping(const btVector3& low, const b
         return !TestAabbAgainstAabb2(least, most, low, high);
     });
     return found;
+}
+
+// Whether another triangle lies in the plane of one, at the middle of its edge.
+bool BulletMesh::goes_on(std::uint32_t t, int k) const {
+    const btVector3 middle = (corner(t, k) + corner(t, k + 1)) / 2, area = area_of(*this, t);
+    const btScalar near = flush * (corner(t, k + 1) - corner(t, k)).length();
+    const btVector3 around(near, near, near);
+    return std::ranges::any_of(overlapping(middle - around, middle + around), [&](std::uint32_t other) {
+        const btVector3 n = area_of(*this, other);
+        const btScalar size = n.length();
+        if (other == t || btFabs(n.dot(area)) < flat * size * area.length()) return false;
+        bool inside = btFabs(n.dot(middle - corner(other, 0))) <= near * size;
+        for (int i = 0; inside && i < 3; ++i) {
+            const btVector3 along = corner(other, i + 1) - corner(other, i);
+            inside = n.cross(along).dot(middle - corner(other, i)) >= -near * size * along.length();
+        }
+        return inside;
+    });
+}
+
+const BulletMesh::FreeBorder& BulletMesh::free_border() const {
+    std::call_once(border_made_, [this] {
+        border_ = {std::vector<bool>(3 * triangles_.size()), std::vector<bool>(vertices_.size())};
+        const auto neighbours = shape_->neighbours();
+        for (std::uint32_t t = 0; t < triangles_.size(); ++t)
+            for (const int k : {0, 1, 2}) {
+                const auto side = static_cast<std::size_t>(k);
+                if (neighbours[t][side] != Shape::no_triangle || goes_on(t, k)) continue;
+                border_.edges[3 * t + side] = true;
+                border_.vertices[triangles_[t][side]] = border_.vertices[triangles_[t][(side + 1) % 3]] = true;
+            }
+    });
+    return border_;
 }
 
 const Extent& BulletMesh::extent() const {

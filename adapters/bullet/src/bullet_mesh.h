@@ -30,6 +30,13 @@ public:
     }
     /// Triangles whose own boxes overlap [low, high], ascending.
     std::vector<std::uint32_t> overlapping(const btVector3& low, const btVector3& high) const;
+    /// Where the surface ends: an edge of one triangle, beyond which no other goes on, as beyond a T-junction.
+    struct FreeBorder {
+        std::vector<bool> edges;    ///< 3 t + k
+        std::vector<bool> vertices; ///< of these
+    };
+    /// Made when it is first asked for. On any thread.
+    const FreeBorder& free_border() const;
 
     /// Box of the mesh in a frame with these axes and origin (rows of a rotation, a translation): exact for up to 1024
     /// vertices, beyond that of the rotated boxes of at most 1024 groups of triangles. Bullet asks for the box of every
@@ -46,12 +53,14 @@ private:
         btVector3 low, high;
     };
     const Extent& extent() const;
+    bool goes_on(std::uint32_t t, int k) const;
 
     std::shared_ptr<const Shape> shape_; ///< has the triangles
     std::vector<btVector3> vertices_;
     std::span<const std::array<std::uint32_t, 3>> triangles_;
-    mutable std::once_flag made_;
-    mutable Extent extent_; ///< after made_: of all vertices, where there are few, or of boxes of the shape's tree
+    mutable std::once_flag made_, border_made_;
+    mutable FreeBorder border_; ///< after border_made_
+    mutable Extent extent_;     ///< after made_: of all vertices, where there are few, or of boxes of the shape's tree
     mutable std::mutex boxes_in_use_;
     mutable std::unordered_map<const btTransform*, Box> boxes_; ///< by addresses that may be gone
     mutable std::atomic<std::uint64_t> bounds_made_ = 0;

@@ -2,6 +2,7 @@
 #include <contact_finder.h>
 
 #include <raycontact/least_change.h>
+#include <vectors.h>
 
 #include <LinearMath/btAabbUtil2.h>
 
@@ -9,9 +10,17 @@
 
 namespace raycontact::bullet {
 
+namespace {
+
+/// The middle of its box, in its own frame.
+btVector3 centre_of(const Leaf& leaf) {
+    return (to_bullet(leaf.converted.shape->box_min()) + to_bullet(leaf.converted.shape->box_max())) / 2;
+}
+
+} // namespace
+
 void ContactFinder::take(PairState& state, const btDispatcherInfo& info) {
     const auto &leaves0 = state.record0->leaves, &leaves1 = state.record1->leaves;
-    const bool speculative = scene_.settings().is_speculative();
     // The broad phase has tested the boxes of whole objects.
     const bool several = leaves0.size() > 1 || leaves1.size() > 1;
     for (int i = 0; i < static_cast<int>(leaves0.size()); ++i) {
@@ -27,14 +36,13 @@ void ContactFinder::take(PairState& state, const btDispatcherInfo& info) {
                     add_plane(state, pair, *face);
                     break;
                 }
-                const BodyId a = pair.leaf0.body, b = pair.leaf1.body;
-                const bool swapped = a.slot > b.slot;
-                batch_.push_back(
-                    {swapped ? Pair{b, a} : Pair{a, b}, &state, i, j, swapped,
-                     manifolds_.patch_reach * pair.smaller_diagonal(),
-                     scene_.settings().is_speculative() ? pair.margin(scene_.settings()) : btScalar(BT_LARGE_FLOAT)});
+                add_to_batch(state, pair, Sides::one);
                 break;
             }
+            case Work::two_sided:
+                ++stats_.two_sided_pairs;
+                add_two_sided(state, pair);
+                break;
             case Work::plane:
                 add_plane(state, pair, pair.plane());
                 break;
@@ -47,9 +55,6 @@ void ContactFinder::take(PairState& state, const btDispatcherInfo& info) {
             }
             case Work::bullet:
                 state.run_child(pair, info);
-                if (!pair.is_two_sided() || pair.other().kind != Kind::convex) break;
-                ++stats_.two_sided_pairs;
-                if (speculative) pair.add_cast(state.candidates);
                 break;
             case Work::nothing:
                 ++stats_.unsupported;
@@ -119,17 +124,78 @@ void ContactFinder::tell_one_sided(const btCollisionObject& object, int child, c
     if (!known.expired()) return;
     known = mesh.converted.shape;
     std::erase_if(told_one_sided_, [](const auto& one) { return one.second.expired(); });
-    faults_.add(hint_of(object, child,
-                        "its mesh is open, so it stops other meshes at the front of its faces alone and lets "
-                        "them through from behind; close it, or turn its faces to where bodies are"));
+    objects_.faults().add(hint_of(object, child,
+                                  "its mesh is open, so it stops other meshes at the front of its faces alone and lets "
+                                  "them through from behind; close it, or turn its faces to where bodies are"));
+}
+
+void ContactFinder::add_to_batch(PairState& state, const LeafPair& pair, Sides sides) {
+    const auto body_of = [&](const Leaf& leaf) {
+        return sides == Sides::back && &leaf == &pair.mesh() ? leaf.back : leaf.body;
+    };
+    const BodyId a = body_of(pair.leaf0), b = body_of(pair.leaf1);
+    const bool swapped = a.slot > b.slot, speculative = scene_.settings().is_speculative();
+    batch_.push_back({swapped ? Pair{b, a} : Pair{a, b}, &state, pair.child0, pair.child1, swapped,
+                      manifolds_.patch_reach * pair.smaller_diagonal(),
+                      speculative ? pair.margin(scene_.settings()) : btScalar(BT_LARGE_FLOAT), sides});
+}
+
+// A convex shape is on one side of each face: where its centre is.
+void ContactFinder::add_two_sided(PairState& state, const LeafPair& pair) {
+    const Leaf &mesh = pair.mesh(), &convex = pair.other();
+    const btScalar margin = scene_.settings().is_speculative() ? pair.margin(scene_.settings()) : btScalar(0);
+    btVector3 low, high;
+    pair.find_passed(margin, low, high);
+    const BulletMesh& faces = *mesh.converted.in_bullet;
+    const std::vector<std::uint32_t> near = faces.overlapping(low, high);
+    const btVector3 centre = mesh.pose.invXform(convex.pose(centre_of(convex)));
+    const auto is_front = [&](std::uint32_t t) {
+        const btVector3 &a = faces.corner(t, 0), one = faces.corner(t, 1) - a, two = faces.corner(t, 2) - a;
+        return one.cross(two).dot(centre - a) >= 0;
+    };
+    const auto fronts = std::ranges::count_if(near, is_front);
+    if (fronts > 0) add_to_batch(state, pair, Sides::front);
+    if (fronts < std::ssize(near)) {
+        auto& leaves = pair.mesh_is_0() ? state.record0->leaves : state.record1->leaves;
+        objects_.add_back(leaves[static_cast<std::size_t>(pair.mesh_is_0() ? pair.child0 : pair.child1)]);
+        add_to_batch(state, pair, Sides::back);
+    }
+    pair.add_borders(near, margin, manifolds_.patch_reach * pair.smaller_diagonal(), state.candidates);
+}
+
+bool ContactFinder::is_on_side(Candidate& c, const Entry& entry) const {
+    const LeafPair pair{entry.leaf0(), entry.leaf1(), entry.child0, entry.child1, convex_};
+    const bool mesh_is_0 = pair.mesh_is_0(), of_mesh = (c.key.vertex_body == 0) == mesh_is_0;
+    const btVector3 away = mesh_is_0 ? -c.normal : c.normal;
+    if (!(away.dot(pair.other().pose(centre_of(pair.other())) - (mesh_is_0 ? c.on0 : c.on1)) > 0)) return false;
+    const auto local = [](std::span<const std::uint32_t> numbers, int number) { // ascending
+        return static_cast<std::size_t>(std::ranges::lower_bound(numbers, static_cast<std::uint32_t>(number))
+                                        - numbers.begin());
+    };
+    const Shape& shape = *pair.mesh().converted.shape;
+    const BulletMesh::FreeBorder& border = pair.mesh().converted.in_bullet->free_border();
+    if (c.key.feature == FeatureKind::edges) {
+        int& edge = of_mesh ? c.key.vertex : c.key.other;
+        // Of corners 0, 1, 2 the back has 0, 2, 1.
+        if (entry.sides == Sides::back) edge += 2 - 2 * (edge % 3);
+        return !border.edges[3 * local(shape.triangle_index(), edge / 3) + static_cast<std::size_t>(edge % 3)];
+    }
+    if (of_mesh && border.vertices[local(shape.vertex_index(), c.key.vertex)]) return false;
+    // A vertex between a front and a back has a contact with either.
+    if (c.key.feature == FeatureKind::vertex
+        && std::ranges::find(entry.state->candidates, c.key, &Candidate::key) != entry.state->candidates.end()) {
+        c.key.feature = FeatureKind::vertex_face;
+        c.key.other = c.triangle;
+    }
+    return true;
 }
 
 Contact ContactFinder::with_least_change(const Contact& contact, const Entry& entry) const {
-    const auto one = static_cast<std::size_t>(entry.child0), two = static_cast<std::size_t>(entry.child1);
-    const Leaf &leaf0 = entry.state->record0->leaves[one], &leaf1 = entry.state->record1->leaves[two];
+    const Leaf &leaf0 = entry.leaf0(), &leaf1 = entry.leaf1();
     if (!(leaf0.way + leaf1.way > entry.margin) || contact.is_speculative()) return contact;
-    const auto moving = [](const Leaf& leaf) {
-        return MovingShape{*leaf.converted.shape, to_pose(leaf.pose), to_pose(leaf.next)};
+    const auto moving = [&](const Leaf& leaf) {
+        const bool back = entry.sides == Sides::back && leaf.back.valid();
+        return MovingShape{*(back ? leaf.reversed : leaf.converted).shape, to_pose(leaf.pose), to_pose(leaf.next)};
     };
     const Leaf &a = entry.swapped ? leaf1 : leaf0, &b = entry.swapped ? leaf0 : leaf1;
     return least_change(contact, moving(a), moving(b), double(entry.margin));
@@ -152,9 +218,10 @@ void ContactFinder::run_batch() {
         while (at != order_.end() && at->first < slots) ++at;
         if (at == order_.end() || at->first != slots) continue;
         const Entry& entry = batch_[at->second];
-        entry.state->candidates.push_back(
-            candidate_of(with_least_change(contact, entry), entry.child0, entry.child1, entry.swapped));
-        entry.state->candidates.back().reach = entry.reach;
+        Candidate c = candidate_of(with_least_change(contact, entry), entry.child0, entry.child1, entry.swapped);
+        if (entry.sides != Sides::one && !is_on_side(c, entry)) continue;
+        c.reach = entry.reach;
+        entry.state->candidates.push_back(c);
     }
 }
 

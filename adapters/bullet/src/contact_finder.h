@@ -15,9 +15,9 @@ namespace raycontact::bullet {
 /// Gives the pairs of a dispatch their candidates: those of meshes from one batch, the others at once.
 class ContactFinder {
 public:
-    ContactFinder(Scene& scene, const ManifoldSettings& manifolds, ConvexShapes convex, Faults& faults,
+    ContactFinder(Scene& scene, const ManifoldSettings& manifolds, ConvexShapes convex, Objects& objects,
                   DispatcherStats& stats)
-        : scene_(scene), manifolds_(manifolds), convex_(convex), faults_(faults), stats_(stats) {}
+        : scene_(scene), manifolds_(manifolds), convex_(convex), objects_(objects), stats_(stats) {}
 
     /// First in a dispatch.
     void begin() {
@@ -32,6 +32,7 @@ public:
     void run_batch();
 
 private:
+    enum class Sides { one, front, back }; ///< of an open mesh that stops a convex shape on both
     /// A pair as contacts name it.
     using Slots = std::pair<std::uint32_t, std::uint32_t>;
     /// Where the contacts of one pair in the batch belong.
@@ -42,9 +43,18 @@ private:
         bool swapped; ///< the scene's first body is the manifold's body 1
         btScalar reach;
         btScalar margin; ///< metres, of speculative contacts; without them larger than any way
+        Sides sides;
+
+        const Leaf& leaf0() const { return state->record0->leaves[static_cast<std::size_t>(child0)]; }
+        const Leaf& leaf1() const { return state->record1->leaves[static_cast<std::size_t>(child1)]; }
     };
     /// What sinks by the slop and slides over a seam is not stopped by it.
     Contact with_least_change(const Contact& contact, const Entry& entry) const;
+    /// Whether it belongs to the side where the convex shape is, and not to where the surface ends. Its key becomes
+    /// that of the mesh's front.
+    bool is_on_side(Candidate& candidate, const Entry& entry) const;
+    void add_to_batch(PairState& state, const LeafPair& pair, Sides sides);
+    void add_two_sided(PairState& state, const LeafPair& pair);
     bool apart(const LeafPair& pair) const;
     std::optional<HalfSpace> face_between(const LeafPair& pair) const;
     void add_plane(PairState& state, const LeafPair& pair, const HalfSpace& space);
@@ -54,7 +64,7 @@ private:
     Scene& scene_;
     const ManifoldSettings& manifolds_;
     ConvexShapes convex_;
-    Faults& faults_;
+    Objects& objects_;
     DispatcherStats& stats_;
     std::vector<Entry> batch_;
     std::vector<std::vector<RoundPair>> rounds_;            ///< of one ball or capsule each

@@ -31,6 +31,7 @@ namespace raycontact::bullet {
 namespace {
 
 constexpr std::uint64_t keep_dispatches = 600;
+constexpr Stretch back_side{};               ///< names a reversed shape; nothing is stretched so
 constexpr std::uint64_t keep_stretched = 16; ///< where another of the same shape is made: its scale may change for ever
 
 /// Locks one part of a mesh interface for as long as it lives.
@@ -439,7 +440,14 @@ Converted ShapeCache::get_again(const btCollisionShape& shape) {
 }
 
 Converted ShapeCache::stretched(const Converted& converted, const Stretch& stretch) {
-    if (stretch == no_stretch) return converted;
+    return stretch == no_stretch ? converted : remade(converted, stretch);
+}
+
+Converted ShapeCache::reversed(const Converted& converted) {
+    return remade(converted, back_side);
+}
+
+Converted ShapeCache::remade(const Converted& converted, const Stretch& stretch) {
     const std::pair key(converted.shape.get(), stretch);
     auto found = stretched_.find(key);
     if (found == stretched_.end()) {
@@ -449,7 +457,8 @@ Converted ShapeCache::stretched(const Converted& converted, const Stretch& stret
                    && one.second.used + keep_stretched < now_;
         });
         ++made_;
-        const auto shape = stretch_shape(*converted.shape, stretch, threads_);
+        const bool back = stretch == back_side;
+        const auto shape = stretch_shape(*converted.shape, back ? no_stretch : stretch, threads_, back);
         const Converted made{shape, std::make_shared<const BulletMesh>(shape), converted.names};
         found = stretched_.emplace(key, Stretched{{made}, converted}).first;
     }
@@ -472,7 +481,7 @@ void ShapeCache::sweep() {
     drop(entries_);
 }
 
-std::shared_ptr<const Shape> stretch_shape(const Shape& shape, const Stretch& s, std::uint32_t threads) {
+std::shared_ptr<const Shape> stretch_shape(const Shape& shape, const Stretch& s, std::uint32_t threads, bool reversed) {
     for (const double x : s)
         if (!std::isfinite(x)) throw InputError(shape.name() + ": its scaling must be finite");
     const bool mirrored =
@@ -485,7 +494,7 @@ std::shared_ptr<const Shape> stretch_shape(const Shape& shape, const Stretch& s,
         plain.vertices.push_back({s[0] * v.x + s[1] * v.y + s[2] * v.z, s[3] * v.x + s[4] * v.y + s[5] * v.z,
                                   s[6] * v.x + s[7] * v.y + s[8] * v.z});
     plain.triangles.assign(shape.triangles().begin(), shape.triangles().end());
-    if (mirrored)
+    if (mirrored != reversed)
         for (auto& t : plain.triangles) std::swap(t[1], t[2]);
     // Lengths, areas and volumes have changed: check again, but keep the file's indices.
     PreparedMesh mesh;

@@ -97,6 +97,8 @@ public:
     Converted get_again(const btCollisionShape& shape);
     /// The same, stretched; one for all that are stretched alike. Throws InputError where no mesh is left.
     Converted stretched(const Converted& converted, const Stretch& stretch);
+    /// The same surface wound the other way: its back.
+    Converted reversed(const Converted& converted);
     void forget(const btCollisionShape& shape) { known_.erase(&shape); }
     /// How many shapes it has made so far.
     std::uint64_t made() const { return made_; }
@@ -118,16 +120,18 @@ private:
         Converted original; ///< kept, since its shape's address is a key
     };
     Converted convert(Mesh mesh, Repair repair);
+    Converted remade(const Converted& converted, const Stretch& stretch);
 
     std::uint32_t threads_;
     std::map<Hashes, Entry> entries_; ///< by the content
     std::unordered_map<const btCollisionShape*, Known> known_;
-    std::map<std::pair<const Shape*, Stretch>, Stretched> stretched_;
+    std::map<std::pair<const Shape*, Stretch>, Stretched> stretched_; ///< a reversed one's stretch is all zeros
     std::uint64_t now_ = 0, made_ = 0;
 };
 
-/// The same shape, stretched in its own frame, with the file's indices; windings turn when it is mirrored. Throws
-/// InputError when an entry is not finite or the result has no area. threads: as of Shape::make.
-std::shared_ptr<const Shape> stretch_shape(const Shape& shape, const Stretch& stretch, std::uint32_t threads = 0);
+/// The same shape, stretched in its own frame, with the file's indices; windings turn when it is mirrored, and when
+/// `reversed`. Throws InputError when an entry is not finite or the result has no area. threads: as of Shape::make.
+std::shared_ptr<const Shape> stretch_shape(const Shape& shape, const Stretch& stretch, std::uint32_t threads = 0,
+                                           bool reversed = false);
 
 } // namespace raycontact::bullet

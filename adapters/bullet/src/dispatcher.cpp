@@ -68,7 +68,7 @@ const ManifoldSettings& checked(const ManifoldSettings& settings) {
 struct CollisionDispatcher::State {
     State(CollisionDispatcher& d, const Settings& settings, const ManifoldSettings& m, ConvexShapes c)
         : dispatcher(d), manifolds(m), convex(c), scene(settings), objects(scene, c), queries(settings, objects, c, d),
-          finder(scene, manifolds, c, objects.faults(), stats) {
+          finder(scene, manifolds, c, objects, stats) {
         objects.faults().set_callback(print);
     }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <leaf_pair.h>
 
-#include <cast.h>
+#include <border.h>
 #include <round.h>
 #include <vectors.h>
 
@@ -66,7 +66,7 @@ Work LeafPair::work() const {
     if (either(Kind::mesh)) {
         if (either(Kind::plane)) return Work::plane;
         if (either(Kind::round)) return Work::round;
-        if (either(Kind::convex) && is_two_sided()) return Work::bullet;
+        if (either(Kind::convex) && is_two_sided()) return Work::two_sided;
         if (!either(Kind::other)) return Work::batch;
     }
     return unsupported(*leaf0.shape, *leaf1.shape) ? Work::nothing : Work::bullet;
@@ -143,15 +143,30 @@ void add_rounds(std::span<const RoundPair> pairs, btScalar near_by, bool ahead) 
     }
 }
 
-void LeafPair::add_cast(std::vector<Candidate>& out) const {
-    const auto hit = cast_hit(other(), mesh());
-    if (!hit) return;
-    const btVector3 on_mesh = hit->point - hit->normal * hit->distance;
-    Candidate c = candidate(false, 0, on_mesh, hit->point, -hit->normal, hit->distance);
-    c.triangle = hit->triangle;
-    c.reach = smaller_diagonal();
-    c.speculative = true;
-    out.push_back(c);
+void LeafPair::find_passed(btScalar margin, btVector3& low, btVector3& high) const {
+    const Leaf& passing = other();
+    btVector3 low_then, high_then;
+    find_box(*passing.converted.shape, mesh().pose.inverseTimes(passing.pose), low, high);
+    find_box(*passing.converted.shape, mesh().next.inverseTimes(passing.next), low_then, high_then);
+    low.setMin(low_then);
+    high.setMax(high_then);
+    const btVector3 around(margin, margin, margin);
+    low -= around;
+    high += around;
+}
+
+void LeafPair::add_borders(std::span<const std::uint32_t> triangles, btScalar margin, btScalar reach,
+                           std::vector<Candidate>& out) const {
+    static thread_local std::vector<BorderContact> found;
+    border_contacts(other(), mesh(), triangles, double(margin), found);
+    for (const BorderContact& f : found) {
+        Candidate c = candidate(true, f.edge, f.point, f.point - f.normal * f.distance, f.normal, f.distance);
+        c.key.feature = FeatureKind::edges;
+        c.key.other = c.triangle = f.end; // whatever face it leaves by: else the last one's would be kept
+        c.reach = reach;
+        c.speculative = f.distance > 0;
+        out.push_back(c);
+    }
 }
 
 Candidate candidate_of(const Contact& contact, int child0, int child1, bool swapped) {

@@ -12,7 +12,7 @@
 namespace raycontact::bullet {
 
 /// What handles a pair of leaves; this does not depend on their positions.
-enum class Work { batch, plane, round, bullet, nothing };
+enum class Work { batch, two_sided, plane, round, bullet, nothing };
 
 /// Bullet has only its empty algorithm for two concave shapes.
 bool unsupported(const btCollisionShape& a, const btCollisionShape& b);
@@ -33,6 +33,9 @@ struct LeafPair {
     /// Metres: of their speculative contacts.
     btScalar margin(const Settings& settings) const;
     /// Of a mesh and something else, or of a height field and a ball or capsule.
+    bool mesh_is_0() const {
+        return leaf0.kind == Kind::mesh || (leaf0.kind == Kind::field && leaf1.kind != Kind::mesh);
+    }
     const Leaf& mesh() const { return mesh_is_0() ? leaf0 : leaf1; }
     const Leaf& other() const { return mesh_is_0() ? leaf1 : leaf0; }
     /// Bullet's rule for convex shapes holds: each face of an open level stops them on both sides. What moves and is
@@ -45,14 +48,17 @@ struct LeafPair {
     /// next dispatch, which are speculative. reach: of each candidate.
     void add_plane(const HalfSpace& space, std::optional<btScalar> near_by, btScalar reach,
                    std::vector<Candidate>& out) const;
-    /// What a convex shape meets on its way, which would be through an open mesh before Bullet's algorithm sees it.
-    void add_cast(std::vector<Candidate>& out) const;
+    /// Of a convex shape and an open mesh, both as meshes: in the mesh's frame, the box of the convex shape now and at
+    /// the next dispatch, and `margin` more.
+    void find_passed(btScalar margin, btVector3& low, btVector3& high) const;
+    /// Where the surface ends inside the convex shape, or within `margin` of it, or will at the next dispatch: no ray
+    /// tells the way out, since the surface has no direction there.
+    void add_borders(std::span<const std::uint32_t> triangles, btScalar margin, btScalar reach,
+                     std::vector<Candidate>& out) const;
 
 private:
     friend void add_rounds(std::span<const RoundPair> pairs, btScalar near_by, bool ahead);
-    bool mesh_is_0() const {
-        return leaf0.kind == Kind::mesh || (leaf0.kind == Kind::field && leaf1.kind != Kind::mesh);
-    }
+
     /// normal: unit, from the other leaf to the mesh. feature_of_mesh: the key names a feature of the mesh.
     Candidate candidate(bool feature_of_mesh, int feature, const btVector3& on_mesh, const btVector3& on_other,
                         const btVector3& normal, btScalar distance) const;

@@ -223,6 +223,7 @@ void Objects::place_leaf(const btCollisionObject& object, Object& record, Leaf& 
     leaf.way = 0;
     if (leaf.body.valid()) {
         scene_.set_pose(leaf.body, to_pose(leaf.pose));
+        if (leaf.back.valid()) scene_.set_pose(leaf.back, to_pose(leaf.pose));
         leaf.way = longest_way(*leaf.converted.shape, before, leaf.pose);
     } else {
         leaf.body = scene_.add(leaf.converted.shape, to_pose(leaf.pose));
@@ -261,6 +262,7 @@ void Objects::expect(const btCollisionObject& object, Object& record, std::uint6
             leaf.next = place(then * leaf.local).pose;
             if (!leaf.body.valid()) continue;
             scene_.set_next_pose(leaf.body, to_pose(leaf.next));
+            if (leaf.back.valid()) scene_.set_next_pose(leaf.back, to_pose(leaf.next));
             leaf.way = longest_way(*leaf.converted.shape, leaf.pose, leaf.next);
         } catch (const InputError&) {
             return;
@@ -285,8 +287,16 @@ void Objects::make_leaves(const btCollisionObject& object, Object& record) {
 
 void Objects::drop_body(Leaf& leaf) {
     if (leaf.body.valid()) scene_.remove(leaf.body);
-    leaf.body = {};
-    leaf.converted = {};
+    if (leaf.back.valid()) scene_.remove(leaf.back);
+    leaf.body = leaf.back = {};
+    leaf.converted = leaf.reversed = {};
+}
+
+void Objects::add_back(Leaf& leaf) {
+    if (leaf.back.valid()) return;
+    leaf.reversed = shapes_.reversed(leaf.converted);
+    leaf.back = scene_.add(leaf.reversed.shape, to_pose(leaf.pose));
+    if (ahead_ > 0) scene_.set_next_pose(leaf.back, to_pose(leaf.next));
 }
 
 void Objects::drop_bodies(Object& record) {

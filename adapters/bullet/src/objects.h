@@ -25,9 +25,11 @@ struct Leaf {
     btTransform local = btTransform::getIdentity(); ///< leaf frame in the object's frame
     Form form;                                      ///< at conversion
     Kind kind = Kind::other;
-    Converted converted;                           ///< mesh, field or convex
-    Stretch stretch = no_stretch;                  ///< of what was converted: its transform is scaled
-    BodyId body;                                   ///< in the scene; of the same kinds
+    Converted converted;          ///< mesh, field or convex
+    Stretch stretch = no_stretch; ///< of what was converted: its transform is scaled
+    BodyId body;                  ///< in the scene; of the same kinds
+    Converted reversed;           ///< of an open mesh, wound the other way, where something met its back
+    BodyId back;                  ///< that, in the scene
     btTransform pose = btTransform::getIdentity(); ///< in the world, rigid; of all kinds but `other`
     btVector3 low{0, 0, 0}, high{0, 0, 0}; ///< its box in the world, where it is in the scene; holds rounding, too
     btTransform next = btTransform::getIdentity(); ///< pose, or where a moving body is expected at the next dispatch
@@ -114,6 +116,8 @@ public:
     /// Also those that no pair needs now: the scene has their poses, and so has a recording.
     void refresh_pinned(std::uint64_t dispatch);
 
+    /// Puts the back of an open mesh beside it into the scene, for shapes that faces stop on both sides.
+    void add_back(Leaf& leaf);
     /// Where objects were, and how they moved.
     void forget();
 

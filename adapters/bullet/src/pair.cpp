@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <inner_edges.h>
 #include <pair.h>
 #include <told.h>
 
@@ -103,13 +102,6 @@ void PairState::run_child(const LeafPair& pair, const btDispatcherInfo& info) {
     result.setShapeIdentifiersA(-1, is_child0 ? pair.child0 : -1);
     result.setShapeIdentifiersB(-1, is_child1 ? pair.child1 : -1);
     found->algorithm->processCollision(&wrap0, &wrap1, info, &result);
-    if (!pair.is_two_sided()) return;
-    static thread_local btManifoldArray manifolds;
-    manifolds.resizeNoInitialize(0);
-    found->algorithm->getAllContactManifolds(manifolds);
-    for (int i = 0; i < manifolds.size(); ++i)
-        leave_inner_edges(*manifolds[i], pair.mesh(),
-                          (manifolds[i]->getBody0() == object0) == (&pair.mesh() == &pair.leaf0));
 }
 
 void PairState::all_manifolds(btManifoldArray& out) const {

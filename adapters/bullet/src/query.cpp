@@ -151,6 +151,7 @@ void Queries::run_pair(Placed& a, Placed& b, const btCollisionObjectWrapper& who
             return run_bullet(a, b, whole_a, whole_b, info, result);
         run_batch(a, b, found);
         break;
+    case Work::two_sided:
     case Work::bullet:
         return run_bullet(a, b, whole_a, whole_b, info, result);
     case Work::nothing:

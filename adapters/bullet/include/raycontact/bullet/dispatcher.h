@@ -39,9 +39,8 @@ struct ManifoldSettings {
 /// Who finds the contacts of a mesh with Bullet's convex shapes. Pairs of convex shapes are Bullet's in any case.
 enum class ConvexShapes {
     /// By the mesh. An open one (without Shape::has_inside) of a static or kinematic object, as levels of games are,
-    /// stops them on both sides of each face, however it is wound: balls and capsules in closed form, the others by
-    /// Bullet's own algorithms, which see what touches, and a cast of the shape, which sees what comes fast. Closed or
-    /// moving ones: as `ours`.
+    /// stops them on both sides of each face, however it is wound: on the side where the shape's centre is. Where its
+    /// surface ends, it is an edge without thickness. Closed or moving ones: as `ours`.
     by_mesh,
     /// RayContact: balls and capsules in closed form; boxes, cylinders, cones, hulls and multi-spheres as meshes made
     /// once for each shape. Other convex shapes are left to Bullet. An open mesh stops them at the front of its faces.
@@ -63,7 +62,8 @@ struct DispatcherStats {
     std::uint64_t round_pairs = 0; ///< pairs of a mesh or height field and a ball or capsule
     std::uint64_t other_pairs = 0; ///< left to Bullet's own algorithms
     /// Pairs of an open mesh and one of Bullet's convex shapes, that takes each face as two-sided
-    /// (ConvexShapes::by_mesh); balls and capsules are in round_pairs.
+    /// (ConvexShapes::by_mesh); balls and capsules are in round_pairs. Those that are near a front, and those near a
+    /// back, are in mesh_pairs, too.
     std::uint64_t two_sided_pairs = 0;
     /// Of mesh_pairs, those with an open mesh: it stops others at the front of its faces, and lets through what comes
     /// from behind. on_fault() is told once for each such mesh of a static or kinematic object.
@@ -98,7 +98,9 @@ struct PointKey {
     /// ball's or capsule's: any number that stays.
     int vertex = 0;
     FeatureKind feature = FeatureKind::vertex; ///< what is in contact
-    int other = 0; ///< of edges that of the other body, as Contact::triangle; of other features 0
+    /// Of edges that of the other body, as Contact::triangle; of the border of an open mesh in a convex shape 0 or 1,
+    /// an end of what is inside; of other features 0.
+    int other = 0;
     friend bool operator==(const PointKey&, const PointKey&) = default;
 };
 
