@@ -17,7 +17,9 @@ constexpr double flush = 0.9999;
 constexpr std::size_t most_flush = 64;
 
 // A direction may leave a vertex's normal cone by this, of a length; and the vertex looks at the target at all.
-constexpr double cone = 0.1, sideways = 1e-6;
+constexpr double cone = 0.01, sideways = 1e-6;
+// A vertex whose neighbours are no farther behind, of their distance, is in the middle of a face: its corners speak.
+constexpr double in_face = 2e-5;
 
 // Of NearestPoint::edges: the corner of two, and the one edge.
 std::uint32_t corner_of(std::uint32_t edges) {
@@ -55,10 +57,15 @@ bool Approaches::reaches_farthest(const Approach& approach) const {
     const Vec3 back =
         approach.when > 0 ? part_of_turn(now, rotated_back(body_.next.rotation, approach.normal), approach.when) : now;
     if (!(dot(source.vertex_normals[vertex_], back) < -sideways)) return false;
-    return !any_neighbour(source, vertex_, [&](std::uint32_t w) {
-        const Vec3 off = source.point(w) - p;
-        return dot(off, back) < -cone * length(off);
-    });
+    bool is_corner = false;
+    return !any_neighbour(source, vertex_,
+                          [&](std::uint32_t w) {
+                              const Vec3 off = source.point(w) - p;
+                              const double behind = dot(off, back), far = length(off);
+                              is_corner = is_corner || behind > in_face * far;
+                              return behind < -cone * far;
+                          })
+           && is_corner;
 }
 
 std::optional<Approach> Approaches::first_met() const {

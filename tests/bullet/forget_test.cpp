@@ -148,7 +148,7 @@ TEST(Forget, NothingIsTold) {
     run(*w, 0, 70);
     w->dispatcher.dispatchAllCollisionPairs(zone.getOverlappingPairCache(), w->world.getDispatchInfo(), &w->dispatcher);
     ASSERT_GT(w->dispatcher.stats().touching, 5u);
-    ASSERT_GT(w->dispatcher.scene().contacts().size(), 5u);
+    ASSERT_FALSE(w->dispatcher.scene().contacts().empty());
     const std::uint32_t meshes = w->dispatcher.scene().body_count();
     w->dispatcher.forget(w->world);
     EXPECT_EQ(w->dispatcher.getNumManifolds(), 0);
