@@ -18,7 +18,7 @@ constexpr std::size_t most_flush = 64;
 
 // A direction may leave a vertex's normal cone by this, of a length; and the vertex looks at the target at all.
 constexpr double cone = 0.01, sideways = 1e-6;
-// A vertex whose neighbours are no farther behind, of their distance, is in the middle of a face: its corners speak.
+// A vertex in the middle of a face or slope, up to rounding, does not speak: corners do.
 constexpr double in_face = 2e-5;
 
 // Of NearestPoint::edges: the corner of two, and the one edge.
@@ -57,15 +57,15 @@ bool Approaches::reaches_farthest(const Approach& approach) const {
     const Vec3 back =
         approach.when > 0 ? part_of_turn(now, rotated_back(body_.next.rotation, approach.normal), approach.when) : now;
     if (!(dot(source.vertex_normals[vertex_], back) < -sideways)) return false;
-    bool is_corner = false;
-    return !any_neighbour(source, vertex_,
-                          [&](std::uint32_t w) {
-                              const Vec3 off = source.point(w) - p;
-                              const double behind = dot(off, back), far = length(off);
-                              is_corner = is_corner || behind > in_face * far;
-                              return behind < -cone * far;
-                          })
-           && is_corner;
+    double behind = 0, beyond = 0; // of their distances
+    any_neighbour(source, vertex_, [&](std::uint32_t w) {
+        const Vec3 off = source.point(w) - p;
+        const double height = -dot(off, back) / length(off);
+        behind = std::max(behind, -height);
+        beyond = std::max(beyond, height);
+        return beyond > cone;
+    });
+    return beyond <= cone && behind > 2 * beyond + in_face;
 }
 
 std::optional<Approach> Approaches::first_met() const {
