@@ -17,7 +17,7 @@ constexpr double flush = 0.9999;
 constexpr std::size_t most_flush = 64;
 
 // A direction may leave a vertex's normal cone by this, of a length; and the vertex looks at the target at all.
-constexpr double cone = 0.01, sideways = 1e-6;
+constexpr double cone = 0.03, sideways = 1e-6;
 // A vertex in the middle of a face or slope, up to rounding, does not speak: corners do.
 constexpr double in_face = 2e-5;
 

@@ -67,7 +67,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Short{"heavy torus on light", 4, 500}, Short{"column of tori", 2, 500},
                     Short{"hand presses a bunny, 60 Hz", 5}, Short{"hand presses a cube, 60 Hz", 5},
                     Short{"hand presses a bunny, 90 Hz", 5}, Short{"hand presses a cube, 90 Hz", 5},
-                    Short{"ball, a mesh, 100 m/s, foil of 1 mm", 1}, Short{"chain of 5 links", 12, 100},
+                    Short{"ball, a mesh, 100 m/s, foil of 1 mm", 1}, Short{"chain of 5 links", 25},
+                    Short{"chain of 10 links", 30}, Short{"chain of 20 links", 40},
                     Short{"gears of 20 and 30 teeth", 3}, Short{"mug on a hook", 20},
                     Short{"peg in a hole with 0.1 mm of play", 5}, Short{"nut M20, friction 0.05, 60 Hz", 1.5}));
 

@@ -112,7 +112,7 @@ bool linked(const Pose& a, const Pose& b, double radius) {
     return crossings % 2 == 1;
 }
 
-constexpr double link_radius = 0.35, link_thick = 0.09;
+constexpr double link_radius = 0.35, link_thick = 0.09, link_play = 0.001;
 
 class Linked : public Course {
 public:
@@ -127,11 +127,12 @@ Hold chain(int links) {
     Hold hold;
     hold.name = "chain of " + std::to_string(links) + " links";
     hold.means = "the links stay linked and hang at rest";
+    hold.seconds = 20 + links; // until it has swung out
     hold.stack = {hold.name, {shape_of(smooth_ring(link_radius, link_thick, 24, 12), false)}, {}};
     for (int k = 0; k <= links; ++k) {
         // In planes that hold z, by turns that of x and that of y.
         Pose pose = turned_at({}, k % 2 == 0 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}, 0.25);
-        pose.translation.z = -k * (2 * link_radius - 2 * link_thick);
+        pose.translation.z = -k * (2 * link_radius - 2 * link_thick - link_play);
         hold.stack.bodies.push_back({0, pose, k == 0});
         hold.stack.bodies.back().damping = 0.2;
         hold.stack.bodies.back().rolling = 0.005;

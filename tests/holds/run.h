@@ -11,7 +11,7 @@
 namespace raycontact::scenes {
 
 struct HoldOptions {
-    double seconds = 20;              ///< at most; a scene may have fewer
+    double seconds = 60;              ///< at most; a scene may have fewer
     double patience = 1e9;            ///< seconds of the computer's time after which a run ends early
     bool recommended_for_all = false; ///< Bullet's own finders get the recommended solver, too
     bool speculative = true;

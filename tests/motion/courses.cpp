@@ -214,17 +214,16 @@ std::vector<Figure> Halt::measured() const {
     return {beyond, figure("goes on at", "m/s", speed_, 1, 0.05)};
 }
 
-Roll::Roll(std::vector<Launch> launches, double radius, double sides, double play)
-    : Launched(std::move(launches), 0.5), radius_(radius), sides_(sides), play_(play) {}
+Roll::Roll(std::vector<Launch> launches, double radius, int sides, double play)
+    : Launched(std::move(launches), 0.5), wheel_{sides, radius, 0, 0.5}, play_(play) {}
 
 void Roll::start(const StackWorld& world) {
     const btRigidBody& body = world.body(movers_[0]);
-    // A polygon that goes over a corner: what it has about the next corner stays (McGeer 1990, a rimless wheel).
-    const double own = double(body.getLocalInertia().y() * body.getInvMass()), arm = radius_ * radius_;
-    kept_ = (own + arm * std::cos(2 * std::numbers::pi / sides_)) / (own + arm);
+    wheel_.inertia = double(body.getLocalInertia().y() * body.getInvMass());
 }
 
-void Roll::watch(const StackWorld& world, double) {
+void Roll::watch(const StackWorld& world, double since) {
+    step_ = since - std::exchange(since_, since);
     ways_.clear();
     speeds_.clear();
     for (std::size_t k = 0; k < movers_.size(); ++k) {
@@ -243,11 +242,16 @@ void Roll::watch(const StackWorld& world, double) {
 }
 
 std::vector<Figure> Roll::measured() const {
-    const double corner = std::numbers::pi / sides_, side = 2 * radius_ * std::sin(corner);
+    const double corner = std::numbers::pi / wheel_.sides, side = 2 * wheel_.radius * std::sin(corner);
+    // A polygon that goes over a corner: what it has about the next corner stays (McGeer 1990, a rimless wheel). Steps
+    // as long as that takes lose more.
+    const double arm = wheel_.radius * wheel_.radius;
+    const double kept = (wheel_.inertia + arm * std::cos(2 * corner)) / (wheel_.inertia + arm);
     double slowest = 1e9, explained = 0, fastest = 0, slowest_launch = 1e9;
     std::size_t worst = 0;
     for (std::size_t k = 0; k < ways_.size(); ++k) {
-        const double right = std::pow(kept_, std::ceil(ways_[k] / side));
+        const double right = std::min(std::pow(kept, std::ceil(ways_[k] / side)),
+                                      wheel_.keeps(launches_[k].velocity.x, since_, 1 / step_));
         if (speeds_[k] / right < slowest) {
             slowest = speeds_[k] / right;
             explained = right;
@@ -258,10 +262,10 @@ std::vector<Figure> Roll::measured() const {
     }
     // It is thrown up from a corner, at most at the speed at which the next one comes down.
     const double leap = fastest * std::sin(corner);
-    const double up = leap * leap / (2 * gravity) + radius_ * (1 - std::cos(corner)) + 1e-3;
+    const double up = leap * leap / (2 * gravity) + wheel_.radius * (1 - std::cos(corner)) + 1e-3;
     const Worst end{speeds_[worst], movers_[worst]};
     // Over a face its middle is lower than over a corner, and so faster.
-    const double faster = 0.01 + gravity * radius_ * (1 - std::cos(corner)) / (slowest_launch * slowest_launch);
+    const double faster = 0.01 + gravity * wheel_.radius * (1 - std::cos(corner)) / (slowest_launch * slowest_launch);
     return {about("rolls on at", "of its speed", end, 0.95 * explained, 1 + faster),
             figure("faster by", "of its speed", faster_, 1, faster), figure("up by", "mm", up_, 1000, up),
             figure("beside by", "mm", beside_, 1000, play_), figure("leans by", "degrees", lean_, 1, 3)};

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <tests/holds/hold.h>
+#include <tests/motion/polygon.h>
 
 #include <cmath>
 #include <cstddef>
@@ -117,7 +118,7 @@ private:
 class Roll : public Launched {
 public:
     /// play: metres that they may go sideways.
-    Roll(std::vector<Launch> launches, double radius, double sides, double play);
+    Roll(std::vector<Launch> launches, double radius, int sides, double play);
 
 protected:
     void start(const StackWorld& world) override;
@@ -125,8 +126,8 @@ protected:
     std::vector<Figure> measured() const override;
 
 private:
-    double radius_, sides_, play_;
-    double kept_ = 1; ///< of the speed, by a side on paper
+    Polygon wheel_;
+    double play_, since_ = 0, step_ = 0; ///< metres; seconds
     std::vector<double> ways_, speeds_;
     Worst up_, beside_, faster_, lean_;
 };

@@ -38,7 +38,7 @@ Hold roll(const std::string& name, const Floor& floor, StackShape wheel, std::ui
     hold.stack.shapes.push_back(std::move(wheel));
     hold.stack.bodies.push_back({.shape = shape, .pose = at(-20, 0, down), .friction = 0.5});
     const Launch launch{{speed, 0, 0}, {0, speed / radius, 0}};
-    hold.course = [=] { return std::make_unique<Roll>(std::vector{launch}, radius, sides, play); };
+    hold.course = [=] { return std::make_unique<Roll>(std::vector{launch}, radius, static_cast<int>(sides), play); };
     return hold;
 }
 
