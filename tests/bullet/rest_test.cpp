@@ -2,12 +2,16 @@
 // Every combination that Bullet would let fall through in silence, and its convex shapes: bodies must rest.
 #include "test_world.h"
 
+#include <raycontact/bullet/recommend.h>
+
 #include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
 #include <BulletCollision/CollisionShapes/btScaledBvhTriangleMeshShape.h>
 #include <BulletCollision/CollisionShapes/btTriangleMesh.h>
 #include <BulletCollision/Gimpact/btGImpactShape.h>
 
 #include <gtest/gtest.h>
+
+#include <cmath>
 
 namespace raycontact::test {
 namespace {
@@ -258,6 +262,31 @@ TEST(Rest, UnsupportedPairIsCounted) {
     w.add_mesh(table(), 5, at(0, 0, 0.3));
     w.steps(1);
     EXPECT_EQ(w.dispatcher.stats().unsupported, 1u);
+}
+
+// Sheets of metal, dropped by 1 m, flat to upright: they lie on the slab, or stand on a side, and not in it.
+TEST(Rest, ThinPlatesLieOnTop) {
+    for (const bool as_mesh : {true, false})
+        for (const double thick : {0.001, 0.003, 0.005})
+            for (const double tilt : {0.0, 0.3, 0.6, 1.0, 1.5})
+                for (const int hertz : {60, 90}) {
+                    TestWorld w;
+                    w.add_mesh(Shape::make(box_mesh(4, 4, 0.5)), 0, at(0, 0, -0.25));
+                    btTransform pose = at(0, 0, 1);
+                    pose.setRotation(btQuaternion(btVector3(1, 0, 0), btScalar(tilt)));
+                    const btVector3 half(btScalar(0.15), btScalar(0.1), btScalar(thick / 2));
+                    const btRigidBody& plate = as_mesh ? w.add_mesh(Shape::make(box_mesh(0.3, 0.2, thick)), 0.2, pose)
+                                                       : w.add(std::make_unique<btBoxShape>(half), 0.2, pose);
+                    bullet::recommend(w.world);
+                    for (int i = 0; i < 5 * hertz; ++i) w.world.stepSimulation(btScalar(1.0 / hertz), 0);
+                    const double up = std::fabs(double(plate.getWorldTransform().getBasis()[2][2]));
+                    const double height = double(plate.getWorldTransform().getOrigin().z());
+                    const double slop = 0.0003;
+                    const double right = up > 0.5 ? thick / 2 : 0.1;
+                    EXPECT_NEAR(height, right - slop, slop) << thick << ' ' << tilt << ' ' << hertz << ' ' << as_mesh;
+                    EXPECT_TRUE(up > 0.999 || up < 0.02) << thick << ' ' << tilt << ' ' << hertz << ' ' << as_mesh;
+                    EXPECT_LT(double(plate.getLinearVelocity().length()), 0.005) << thick << ' ' << tilt;
+                }
 }
 
 } // namespace
