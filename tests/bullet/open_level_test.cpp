@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 #include <string>
@@ -217,6 +218,88 @@ TEST(OpenLevel, ASmallSheetCarriesALargeBox) {
         EXPECT_NEAR(double(body.getWorldTransform().getOrigin().z()), 0.2, 0.003);
         EXPECT_LT(double(body.getLinearVelocity().length()), 0.005);
         EXPECT_GT(double(body.getWorldTransform().getBasis()[2][2]), 0.9999);
+    }
+}
+
+// A beam across the ridge of a roof: two edges meet. Any winding, first corner, and order of bodies.
+TEST(OpenLevel, EdgesAreFoundOnBothSides) {
+    const btVector3 ridge0(0, -1, 0), ridge1(0, 1, 0), left0(-1, -1, -1), left1(-1, 1, -1), right0(1, -1, -1),
+        right1(1, 1, -1);
+    const std::vector<std::array<btVector3, 3>> up{
+        {ridge0, ridge1, left1}, {ridge0, left1, left0}, {ridge1, ridge0, right0}, {ridge1, right0, right1}};
+    for (const bool down : {false, true})
+        for (const std::size_t first : {0u, 1u, 2u})
+            for (const bool beam_first : {false, true}) {
+                btTriangleMesh mesh;
+                for (const auto& t : up) {
+                    const btVector3 &a = t[first], &b = t[(first + 1) % 3], &c = t[(first + 2) % 3];
+                    down ? mesh.addTriangle(a, c, b) : mesh.addTriangle(a, b, c);
+                }
+                TestWorld w;
+                const auto add_beam = [&]() -> btRigidBody& {
+                    const btVector3 half(btScalar(0.4), btScalar(0.05), btScalar(0.05));
+                    btRigidBody& beam = w.add(std::make_unique<btBoxShape>(half), 1, at(0.02, 0.1, 0.3));
+                    beam.setAngularFactor(0);
+                    return beam;
+                };
+                const btRigidBody* beam = beam_first ? &add_beam() : nullptr;
+                add_level(w, mesh);
+                if (!beam_first) beam = &add_beam();
+                w.steps(120);
+                EXPECT_NEAR(double(beam->getWorldTransform().getOrigin().z()), 0.05, 0.003)
+                    << "down " << down << ", first corner " << first << ", beam first " << beam_first;
+                EXPECT_LT(double(beam->getLinearVelocity().length()), 0.005);
+            }
+}
+
+// A floor that ends at a wall down: what hangs over by less than half lies still.
+TEST(OpenLevel, AKerbDoesNotPush) {
+    for (const bool down : {false, true})
+        for (const double cell : {0.1, 0.5, 2.0})
+            for (const double x : {-0.25, -0.1, -0.02}) {
+                btTriangleMesh mesh;
+                const auto add = [&](const btVector3& a, const btVector3& one, const btVector3& two) {
+                    const btVector3 b = a + one, c = a + one + two, d = a + two;
+                    down ? mesh.addTriangle(a, c, b) : mesh.addTriangle(a, b, c);
+                    down ? mesh.addTriangle(a, d, c) : mesh.addTriangle(a, c, d);
+                };
+                const auto s = static_cast<btScalar>(cell);
+                const int cells = static_cast<int>(std::lround(4 / cell)) / 2;
+                for (int i = 0; i < cells; ++i)
+                    for (int k = 0; k < 2 * cells; ++k) {
+                        const btScalar y = s * btScalar(k - cells);
+                        add(btVector3(-s * btScalar(i + 1), y, 0), btVector3(s, 0, 0), btVector3(0, s, 0));
+                        add(btVector3(0, y, -s * btScalar(i + 1)), btVector3(0, s, 0), btVector3(0, 0, s));
+                    }
+                TestWorld w;
+                add_level(w, mesh);
+                const btRigidBody& body = w.add(shapes[0].second(), 1, at(x, 0.03, 0.2));
+                bullet::recommend(w.world);
+                w.steps(240);
+                const btVector3& end = body.getWorldTransform().getOrigin();
+                EXPECT_NEAR(double(end.z()), 0.2, 0.001) << down << ' ' << cell << ' ' << x;
+                EXPECT_NEAR(double(end.x()), x, 0.003) << down << ' ' << cell << ' ' << x;
+                EXPECT_NEAR(double(end.y()), 0.03, 0.003) << down << ' ' << cell << ' ' << x;
+                EXPECT_LT(double(body.getLinearVelocity().length()), 0.005) << down << ' ' << cell << ' ' << x;
+            }
+}
+
+// A fence whose triangles are there twice, or that has a decal on it up to its border.
+TEST(OpenLevel, WhatLiesOnASheetDoesNotEndItsBorder) {
+    for (const int kind : {0, 1, 2}) {
+        const btVector3 corner(-4, 0, 0), one(8, 0, 0), two(0, 0, 1);
+        const auto mesh = sheet(corner, one, two);
+        if (kind == 0) mesh->addTriangle(corner, corner + one + two, corner + two);
+        if (kind == 1) mesh->addTriangle(corner, corner + two, corner + one + two);
+        if (kind == 2)
+            mesh->addTriangle(btVector3(btScalar(-0.2), 0, btScalar(0.5)), btVector3(btScalar(0.2), 0, btScalar(0.5)),
+                              btVector3(0, 0, 1));
+        TestWorld w;
+        add_level(w, *mesh);
+        btRigidBody& body = w.add(shapes[0].second(), 1, at(0.13, 0.07, 1.5));
+        body.setAngularFactor(0);
+        w.steps(120);
+        EXPECT_NEAR(double(body.getWorldTransform().getOrigin().z()), 1.2, 0.003) << kind;
     }
 }
 

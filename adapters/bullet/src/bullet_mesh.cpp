@@ -46,37 +46,52 @@ std::vector<std::uint32_t> BulletMesh::overlapping(const btVector3& low, const b
     return found;
 }
 
-// Whether another triangle lies in the plane of one, at the middle of its edge.
+// Whether another triangle lies in the plane of one, just beyond the middle of its edge.
 bool BulletMesh::goes_on(std::uint32_t t, int k) const {
-    const btVector3 middle = (corner(t, k) + corner(t, k + 1)) / 2, area = area_of(*this, t);
-    const btScalar near = flush * (corner(t, k + 1) - corner(t, k)).length();
+    const btVector3 area = area_of(*this, t), along = corner(t, k + 1) - corner(t, k);
+    const btScalar near = flush * along.length();
+    const btVector3 beyond = (corner(t, k) + corner(t, k + 1)) / 2 + near * along.cross(area).normalized();
     const btVector3 around(near, near, near);
-    return std::ranges::any_of(overlapping(middle - around, middle + around), [&](std::uint32_t other) {
+    return std::ranges::any_of(overlapping(beyond - around, beyond + around), [&](std::uint32_t other) {
         const btVector3 n = area_of(*this, other);
         const btScalar size = n.length();
-        if (other == t || btFabs(n.dot(area)) < flat * size * area.length()) return false;
-        bool inside = btFabs(n.dot(middle - corner(other, 0))) <= near * size;
+        if (other == t || !(size > 0) || btFabs(n.dot(area)) < flat * size * area.length()) return false;
+        bool inside = btFabs(n.dot(beyond - corner(other, 0))) <= near * size;
         for (int i = 0; inside && i < 3; ++i) {
-            const btVector3 along = corner(other, i + 1) - corner(other, i);
-            inside = n.cross(along).dot(middle - corner(other, i)) >= -near * size * along.length();
+            const btVector3 side = corner(other, i + 1) - corner(other, i);
+            inside = n.cross(side).dot(beyond - corner(other, i)) >= -near / 100 * size * side.length();
         }
         return inside;
     });
 }
 
+// Those that lie on each other are neighbours, too.
 const BulletMesh::FreeBorder& BulletMesh::free_border() const {
     std::call_once(border_made_, [this] {
         border_ = {std::vector<bool>(3 * triangles_.size()), std::vector<bool>(vertices_.size())};
         const auto neighbours = shape_->neighbours();
-        for (std::uint32_t t = 0; t < triangles_.size(); ++t)
+        for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+            const btVector3 area = area_of(*this, t);
+            if (!(area.length2() > 0)) continue;
             for (const int k : {0, 1, 2}) {
                 const auto side = static_cast<std::size_t>(k);
-                if (neighbours[t][side] != Shape::no_triangle || goes_on(t, k)) continue;
+                const std::uint32_t across = neighbours[t][side];
+                const bool turns_back = across != Shape::no_triangle && lies_on(t, k, across);
+                if ((across != Shape::no_triangle && !turns_back) || goes_on(t, k)) continue;
                 border_.edges[3 * t + side] = true;
                 border_.vertices[triangles_[t][side]] = border_.vertices[triangles_[t][(side + 1) % 3]] = true;
             }
+        }
     });
     return border_;
+}
+
+// Whether a triangle that shares an edge of another lies in its plane on the same side of the edge.
+bool BulletMesh::lies_on(std::uint32_t t, int k, std::uint32_t other) const {
+    const btVector3 one = area_of(*this, t), two = area_of(*this, other), along = corner(t, k + 1) - corner(t, k);
+    if (btFabs(one.dot(two)) < flat * one.length() * two.length()) return false;
+    const btVector3 middle = (corner(other, 0) + corner(other, 1) + corner(other, 2)) / 3;
+    return one.cross(along).dot(middle - corner(t, k)) > 0;
 }
 
 const Extent& BulletMesh::extent() const {

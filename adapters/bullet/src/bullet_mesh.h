@@ -54,6 +54,7 @@ private:
     };
     const Extent& extent() const;
     bool goes_on(std::uint32_t t, int k) const;
+    bool lies_on(std::uint32_t t, int k, std::uint32_t other) const;
 
     std::shared_ptr<const Shape> shape_; ///< has the triangles
     std::vector<btVector3> vertices_;

@@ -7,6 +7,8 @@
 #include <LinearMath/btAabbUtil2.h>
 
 #include <algorithm>
+#include <tuple>
+#include <utility>
 
 namespace raycontact::bullet {
 
@@ -154,19 +156,21 @@ void ContactFinder::add_two_sided(PairState& state, const LeafPair& pair) {
         return one.cross(two).dot(centre - a) >= 0;
     };
     const auto fronts = std::ranges::count_if(near, is_front);
+    if (fronts > 0 && fronts < std::ssize(near)) between_.push_back(&state);
     if (fronts > 0) add_to_batch(state, pair, Sides::front);
     if (fronts < std::ssize(near)) {
         auto& leaves = pair.mesh_is_0() ? state.record0->leaves : state.record1->leaves;
         objects_.add_back(leaves[static_cast<std::size_t>(pair.mesh_is_0() ? pair.child0 : pair.child1)]);
         add_to_batch(state, pair, Sides::back);
     }
-    pair.add_borders(near, margin, manifolds_.patch_reach * pair.smaller_diagonal(), state.candidates);
+    pair.add_borders({near, low, high}, margin, manifolds_.patch_reach * pair.smaller_diagonal(), state.candidates);
 }
 
 bool ContactFinder::is_on_side(Candidate& c, const Entry& entry) const {
     const LeafPair pair{entry.leaf0(), entry.leaf1(), entry.child0, entry.child1, convex_};
     const bool mesh_is_0 = pair.mesh_is_0(), of_mesh = (c.key.vertex_body == 0) == mesh_is_0;
     const btVector3 away = mesh_is_0 ? -c.normal : c.normal;
+    c.of_mesh = of_mesh;
     if (!(away.dot(pair.other().pose(centre_of(pair.other())) - (mesh_is_0 ? c.on0 : c.on1)) > 0)) return false;
     const auto local = [](std::span<const std::uint32_t> numbers, int number) { // ascending
         return static_cast<std::size_t>(std::ranges::lower_bound(numbers, static_cast<std::uint32_t>(number))
@@ -174,20 +178,36 @@ bool ContactFinder::is_on_side(Candidate& c, const Entry& entry) const {
     };
     const Shape& shape = *pair.mesh().converted.shape;
     const BulletMesh::FreeBorder& border = pair.mesh().converted.in_bullet->free_border();
-    if (c.key.feature == FeatureKind::edges) {
-        int& edge = of_mesh ? c.key.vertex : c.key.other;
-        // Of corners 0, 1, 2 the back has 0, 2, 1.
-        if (entry.sides == Sides::back) edge += 2 - 2 * (edge % 3);
-        return !border.edges[3 * local(shape.triangle_index(), edge / 3) + static_cast<std::size_t>(edge % 3)];
+    if (c.key.feature != FeatureKind::edges)
+        return !of_mesh || !border.vertices[local(shape.vertex_index(), c.key.vertex)];
+    int& edge = of_mesh ? c.key.vertex : c.key.other;
+    // Of corners 0, 1, 2 the back has 0, 2, 1.
+    if (entry.sides == Sides::back) edge += 2 - 2 * (edge % 3);
+    c.triangle = c.key.other;
+    return !border.edges[3 * local(shape.triangle_index(), edge / 3) + static_cast<std::size_t>(edge % 3)];
+}
+
+// A feature of the mesh leaves the convex shape on one side, by less. A vertex of the shape may lie between a front and
+// a back, as in a corner of walls: then the second is named by its face, too.
+void ContactFinder::join_sides(std::vector<Candidate>& found) {
+    const auto name = [](const PointKey& k) {
+        return std::tuple(k.child0, k.child1, k.vertex_body, k.vertex, k.feature, k.other);
+    };
+    const auto in_order = [&](const Candidate& a, const Candidate& b) { // of equal names the shallower first
+        return std::pair(name(a.key), -a.distance) < std::pair(name(b.key), -b.distance);
+    };
+    std::ranges::stable_sort(found, in_order);
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        Candidate c = found[i];
+        if (kept > 0 && found[kept - 1].key == c.key) {
+            if (c.of_mesh || c.key.feature != FeatureKind::vertex) continue;
+            c.key.feature = FeatureKind::vertex_face;
+            c.key.other = c.triangle;
+        }
+        found[kept++] = c;
     }
-    if (of_mesh && border.vertices[local(shape.vertex_index(), c.key.vertex)]) return false;
-    // A vertex between a front and a back has a contact with either.
-    if (c.key.feature == FeatureKind::vertex
-        && std::ranges::find(entry.state->candidates, c.key, &Candidate::key) != entry.state->candidates.end()) {
-        c.key.feature = FeatureKind::vertex_face;
-        c.key.other = c.triangle;
-    }
-    return true;
+    found.erase(found.begin() + static_cast<std::ptrdiff_t>(kept), found.end());
 }
 
 Contact ContactFinder::with_least_change(const Contact& contact, const Entry& entry) const {
@@ -223,6 +243,7 @@ void ContactFinder::run_batch() {
         c.reach = entry.reach;
         entry.state->candidates.push_back(c);
     }
+    for (PairState* state : between_) join_sides(state->candidates);
 }
 
 } // namespace raycontact::bullet

@@ -22,6 +22,7 @@ public:
     /// First in a dispatch.
     void begin() {
         batch_.clear();
+        between_.clear();
         rounds_.clear();
         round_of_.clear();
     }
@@ -53,6 +54,7 @@ private:
     /// Whether it belongs to the side where the convex shape is, and not to where the surface ends. Its key becomes
     /// that of the mesh's front.
     bool is_on_side(Candidate& candidate, const Entry& entry) const;
+    static void join_sides(std::vector<Candidate>& found);
     void add_to_batch(PairState& state, const LeafPair& pair, Sides sides);
     void add_two_sided(PairState& state, const LeafPair& pair);
     bool apart(const LeafPair& pair) const;
@@ -67,6 +69,7 @@ private:
     Objects& objects_;
     DispatcherStats& stats_;
     std::vector<Entry> batch_;
+    std::vector<PairState*> between_; ///< with a convex shape near fronts and backs of an open mesh; may be there twice
     std::vector<std::vector<RoundPair>> rounds_;            ///< of one ball or capsule each
     std::unordered_map<const Leaf*, std::size_t> round_of_; ///< no order of it shows
     std::vector<std::pair<Slots, std::uint32_t>> order_;    ///< of the batch: pairs ascending, with their places in it

@@ -7,6 +7,8 @@
 
 #include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
 
+#include <LinearMath/btAabbUtil2.h>
+
 #include <algorithm>
 
 namespace raycontact::bullet {
@@ -150,15 +152,31 @@ void LeafPair::find_passed(btScalar margin, btVector3& low, btVector3& high) con
     find_box(*passing.converted.shape, mesh().next.inverseTimes(passing.next), low_then, high_then);
     low.setMin(low_then);
     high.setMax(high_then);
-    const btVector3 around(margin, margin, margin);
+    // The scene lets the last motion of what has no velocity go on.
+    const auto unsaid = [](const Leaf& leaf) { return leaf.next == leaf.pose ? leaf.way : btScalar(0); };
+    const btScalar reach = margin + unsaid(leaf0) + unsaid(leaf1);
+    const btVector3 around(reach, reach, reach);
     low -= around;
     high += around;
 }
 
-void LeafPair::add_borders(std::span<const std::uint32_t> triangles, btScalar margin, btScalar reach,
-                           std::vector<Candidate>& out) const {
+void LeafPair::add_borders(const Passed& passed, btScalar margin, btScalar reach, std::vector<Candidate>& out) const {
+    static thread_local std::vector<std::uint32_t> edges;
     static thread_local std::vector<BorderContact> found;
-    border_contacts(other(), mesh(), triangles, double(margin), found);
+    const BulletMesh& faces = *mesh().converted.in_bullet;
+    const std::vector<bool>& is_free = faces.free_border().edges;
+    edges.clear();
+    for (const std::uint32_t t : passed.triangles)
+        for (const int k : {0, 1, 2}) {
+            const std::uint32_t edge = 3 * t + static_cast<std::uint32_t>(k);
+            if (!is_free[edge]) continue;
+            btVector3 least = faces.corner(t, k), most = least;
+            least.setMin(faces.corner(t, k + 1));
+            most.setMax(faces.corner(t, k + 1));
+            if (TestAabbAgainstAabb2(least, most, passed.low, passed.high)) edges.push_back(edge);
+        }
+    if (edges.empty()) return;
+    border_contacts(other(), mesh(), edges, double(margin), found);
     for (const BorderContact& f : found) {
         Candidate c = candidate(true, f.edge, f.point, f.point - f.normal * f.distance, f.normal, f.distance);
         c.key.feature = FeatureKind::edges;

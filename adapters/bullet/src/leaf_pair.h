@@ -51,10 +51,14 @@ struct LeafPair {
     /// Of a convex shape and an open mesh, both as meshes: in the mesh's frame, the box of the convex shape now and at
     /// the next dispatch, and `margin` more.
     void find_passed(btScalar margin, btVector3& low, btVector3& high) const;
+    /// What of the mesh is in that box.
+    struct Passed {
+        std::span<const std::uint32_t> triangles;
+        btVector3 low, high;
+    };
     /// Where the surface ends inside the convex shape, or within `margin` of it, or will at the next dispatch: no ray
     /// tells the way out, since the surface has no direction there.
-    void add_borders(std::span<const std::uint32_t> triangles, btScalar margin, btScalar reach,
-                     std::vector<Candidate>& out) const;
+    void add_borders(const Passed& passed, btScalar margin, btScalar reach, std::vector<Candidate>& out) const;
 
 private:
     friend void add_rounds(std::span<const RoundPair> pairs, btScalar near_by, bool ahead);

@@ -59,8 +59,8 @@ void recommend(btDiscreteDynamicsWorld& world, const SolverSettings& settings) {
     info.m_splitImpulse = 1;
     // Bullet's -0.04 leaves shallower contacts to bounce. Not 0: what a soft contact is told as (told.h) is between.
     info.m_splitImpulsePenetrationThreshold = -4 * SIMD_EPSILON * btMax(info.m_linearSlop, btScalar(1e-5));
-    // Contacts keep their keys, so what carried in the last step carries in this one. Bullet's 0.85 drops a part of each
-    // load in every step, and iterations have to bring it down a whole chain again.
+    // Contacts keep their keys, so what carried in the last step carries in this one. Bullet's 0.85 drops a part of
+    // each load in every step, and iterations have to bring it down a whole chain again.
     info.m_warmstartingFactor = 1;
     // Directions fixed by the normal: a friction impulse carried over means the same in the next step.
     info.m_solverMode |= SOLVER_USE_2_FRICTION_DIRECTIONS | SOLVER_DISABLE_VELOCITY_DEPENDENT_FRICTION_DIRECTION;
