@@ -97,7 +97,7 @@ std::string hash_of(const Crowd& crowd, Method method, Caster caster, const std:
         }
     }
     EXPECT_GE(contacts, crowd.least_contacts) << crowd.name;
-    EXPECT_GE(untouched, speculative ? crowd.least_contacts / 100 : 0) << crowd.name;
+    EXPECT_GE(untouched, speculative ? crowd.least_contacts / 200 : 0) << crowd.name;
     return hash.hex();
 }
 
