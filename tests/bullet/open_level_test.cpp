@@ -337,7 +337,8 @@ TEST(OpenLevel, ATrayHoldsWhatFallsIntoIt) {
         add_level(w, mesh);
         bullet::recommend(w.world, {.size = 0.4});
         for (int i = 0; i < 12; ++i) {
-            btTransform pose = at(0.55 * (i % 3) - 0.55, 0.55 * (i / 3 % 2) - 0.3, 0.4 + 0.6 * (i / 6));
+            btTransform pose =
+                at(0.55 * (i % 3) - 0.55, 0.55 * (i / 3 % 2) - 0.3, 0.4 + 0.6 * static_cast<int>(i >= 6));
             pose.setRotation(btQuaternion(btVector3(1, 2, btScalar(i)).normalized(), btScalar(i)));
             w.add(shapes[i % 2 == 0 ? 0 : 3].second(), 1, pose);
         }
