@@ -80,12 +80,16 @@ Batch make_batch(std::uint32_t triangles, std::size_t pairs, std::size_t steps) 
         const std::array<double, 4> turn = random.tilt(2 * share);
         ways.push_back(pose_from_quaternion({x, y, z}, turn[0], turn[1], turn[2], turn[3]));
     }
+    const auto moved = [](const Pose& pose, const Pose& by) {
+        const Vec3 &at = pose.translation, &way = by.translation;
+        return Pose{product(pose.rotation, by.rotation), {at.x + way.x, at.y + way.y, at.z + way.z}};
+    };
     for (std::size_t step = 0; step < steps; ++step) {
         for (std::size_t i = 0; i < bodies.size(); ++i) {
-            Pose& pose = bodies[i].pose;
-            const Vec3 &at = pose.translation, &way = ways[i].translation;
-            if (step > 0) pose = {product(pose.rotation, ways[i].rotation), {at.x + way.x, at.y + way.y, at.z + way.z}};
-            bodies[i].centred = centred_pose(*batch.shape, pose);
+            PlacedBody& body = bodies[i];
+            if (step > 0) body.pose = moved(body.pose, ways[i]);
+            body.centred = centred_pose(*batch.shape, body.pose);
+            body.next = centred_pose(*batch.shape, moved(body.pose, ways[i]));
         }
         batch.steps.push_back(bodies);
     }
@@ -244,6 +248,14 @@ void count_all() {
         Run(*batch, "standard" + size, settings(Method::standard)).count();
         Run(*batch, "certified" + size, settings(Method::certified)).count();
         Run(*batch, "predictive" + size, settings(Method::predictive)).count();
+    }
+    for (const Features features : {Features::vertices, Features::edges}) {
+        const std::string input = features == Features::edges ? "edges" : "vertices";
+        Settings of = settings(Method::certified);
+        of.features = features;
+        if (features == Features::edges) Run(small, input, of).count(); // those of vertices are `certified`
+        of.speculative = true;
+        Run(small, input + "_ahead", of).count();
     }
     // Every triangle for every ray; more of them would only be more of the same.
     const Batch few = make_batch(902, 8, 2);
