@@ -31,9 +31,11 @@ struct Walk : TestWorld {
         if (attached) dispatcher.attach(world);
     }
     ~Walk() {
-        if (!character) return;
-        world.removeAction(&*character);
-        world.removeCollisionObject(&ghost);
+        if (character) {
+            world.removeAction(&*character);
+            world.removeCollisionObject(&ghost);
+        }
+        broadphase.getOverlappingPairCache()->setInternalGhostPairCallback(nullptr); // it goes before the world
     }
     void add_character(const btVector3& place) {
         ghost.setWorldTransform(btTransform(btQuaternion::getIdentity(), place));

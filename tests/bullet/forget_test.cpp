@@ -137,12 +137,12 @@ TEST(Forget, AnyWorldThatIsAddedAgainRepeats) {
 }
 
 TEST(Forget, NothingIsTold) {
-    const auto w = heap(true, true);
+    btGhostPairCallback callback; // the world asks it to its end
     btPairCachingGhostObject zone;
     btSphereShape ball(2);
     zone.setCollisionShape(&ball);
     zone.setWorldTransform(at(0, 0, 1));
-    btGhostPairCallback callback;
+    const auto w = heap(true, true);
     w->broadphase.getOverlappingPairCache()->setInternalGhostPairCallback(&callback);
     w->world.addCollisionObject(&zone, btBroadphaseProxy::DefaultFilter, btBroadphaseProxy::AllFilter);
     run(*w, 0, 70);

@@ -227,8 +227,8 @@ TEST(Kinematic, WhatIsPutElsewhereSweepsNothing) {
 
 // Filters are Bullet's, and so is a ghost's list of what overlaps it.
 TEST(Kinematic, FiltersHoldOnTheWay) {
+    btGhostPairCallback on_ghosts; // the world asks it to its end
     HandWorld w;
-    btGhostPairCallback on_ghosts;
     w.broadphase->getOverlappingPairCache()->setInternalGhostPairCallback(&on_ghosts);
     btRigidBody& seen = w.add(targets[0].second(), 0.2, at(0, 0, 0.05));
     btRigidBody& filtered = w.add(targets[0].second(), 0.2, at(0, 0.12, 0.05));
