@@ -60,9 +60,9 @@ bool Approaches::reaches_farthest(const Approach& approach) const {
     double behind = 0, beyond = 0; // of their distances
     any_neighbour(source, vertex_, [&](std::uint32_t w) {
         const Vec3 off = source.point(w) - p;
-        const double height = -dot(off, back) / length(off);
-        behind = std::max(behind, -height);
-        beyond = std::max(beyond, height);
+        const double back_by = dot(off, back) / length(off);
+        behind = std::max(behind, back_by);
+        beyond = std::max(beyond, -back_by);
         return beyond > cone;
     });
     return beyond <= cone && behind > 2 * beyond + in_face;

@@ -16,7 +16,6 @@ struct Candidate {
     btScalar reach{};         ///< size of a patch it may join
     PlaceName name0, name1;   ///< only where gContactAddedCallback will be called
     bool speculative = false; ///< nothing touches yet
-    bool of_mesh = false;     ///< of an open mesh and a convex shape: a feature of the mesh
 };
 
 } // namespace raycontact::bullet

@@ -146,10 +146,9 @@ void ContactFinder::add_to_batch(PairState& state, const LeafPair& pair, Sides s
 void ContactFinder::add_two_sided(PairState& state, const LeafPair& pair) {
     const Leaf &mesh = pair.mesh(), &convex = pair.other();
     const btScalar margin = scene_.settings().is_speculative() ? pair.margin(scene_.settings()) : btScalar(0);
-    btVector3 low, high;
-    pair.find_passed(margin, low, high);
+    const LeafPair::Passed passed = pair.passed(margin);
+    const std::vector<std::uint32_t>& near = passed.triangles;
     const BulletMesh& faces = *mesh.converted.in_bullet;
-    const std::vector<std::uint32_t> near = faces.overlapping(low, high);
     const btVector3 centre = mesh.pose.invXform(convex.pose(centre_of(convex)));
     const auto is_front = [&](std::uint32_t t) {
         const btVector3 &a = faces.corner(t, 0), one = faces.corner(t, 1) - a, two = faces.corner(t, 2) - a;
@@ -163,14 +162,13 @@ void ContactFinder::add_two_sided(PairState& state, const LeafPair& pair) {
         objects_.add_back(leaves[static_cast<std::size_t>(pair.mesh_is_0() ? pair.child0 : pair.child1)]);
         add_to_batch(state, pair, Sides::back);
     }
-    pair.add_borders({near, low, high}, margin, manifolds_.patch_reach * pair.smaller_diagonal(), state.candidates);
+    pair.add_borders(passed, margin, manifolds_.patch_reach * pair.smaller_diagonal(), state.candidates);
 }
 
 bool ContactFinder::is_on_side(Candidate& c, const Entry& entry) const {
     const LeafPair pair{entry.leaf0(), entry.leaf1(), entry.child0, entry.child1, convex_};
     const bool mesh_is_0 = pair.mesh_is_0(), of_mesh = (c.key.vertex_body == 0) == mesh_is_0;
     const btVector3 away = mesh_is_0 ? -c.normal : c.normal;
-    c.of_mesh = of_mesh;
     if (!(away.dot(pair.other().pose(centre_of(pair.other())) - (mesh_is_0 ? c.on0 : c.on1)) > 0)) return false;
     const auto local = [](std::span<const std::uint32_t> numbers, int number) { // ascending
         return static_cast<std::size_t>(std::ranges::lower_bound(numbers, static_cast<std::uint32_t>(number))
@@ -189,7 +187,13 @@ bool ContactFinder::is_on_side(Candidate& c, const Entry& entry) const {
 
 // A feature of the mesh leaves the convex shape on one side, by less. A vertex of the shape may lie between a front and
 // a back, as in a corner of walls: then the second is named by its face, too.
-void ContactFinder::join_sides(std::vector<Candidate>& found) {
+void ContactFinder::join_sides(PairState& state) {
+    std::vector<Candidate>& found = state.candidates;
+    const auto of_mesh = [&](const PointKey& k) {
+        const Leaf& own = k.vertex_body == 0 ? state.record0->leaves[static_cast<std::size_t>(k.child0)]
+                                             : state.record1->leaves[static_cast<std::size_t>(k.child1)];
+        return own.kind == Kind::mesh;
+    };
     const auto name = [](const PointKey& k) {
         return std::tuple(k.child0, k.child1, k.vertex_body, k.vertex, k.feature, k.other);
     };
@@ -201,7 +205,7 @@ void ContactFinder::join_sides(std::vector<Candidate>& found) {
     for (std::size_t i = 0; i < found.size(); ++i) {
         Candidate c = found[i];
         if (kept > 0 && found[kept - 1].key == c.key) {
-            if (c.of_mesh || c.key.feature != FeatureKind::vertex) continue;
+            if (of_mesh(c.key) || c.key.feature != FeatureKind::vertex) continue;
             c.key.feature = FeatureKind::vertex_face;
             c.key.other = c.triangle;
         }
@@ -243,7 +247,7 @@ void ContactFinder::run_batch() {
         c.reach = entry.reach;
         entry.state->candidates.push_back(c);
     }
-    for (PairState* state : between_) join_sides(state->candidates);
+    for (PairState* state : between_) join_sides(*state);
 }
 
 } // namespace raycontact::bullet

@@ -54,7 +54,7 @@ private:
     /// Whether it belongs to the side where the convex shape is, and not to where the surface ends. Its key becomes
     /// that of the mesh's front.
     bool is_on_side(Candidate& candidate, const Entry& entry) const;
-    static void join_sides(std::vector<Candidate>& found);
+    static void join_sides(PairState& state);
     void add_to_batch(PairState& state, const LeafPair& pair, Sides sides);
     void add_two_sided(PairState& state, const LeafPair& pair);
     bool apart(const LeafPair& pair) const;

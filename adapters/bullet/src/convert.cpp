@@ -31,7 +31,6 @@ namespace raycontact::bullet {
 namespace {
 
 constexpr std::uint64_t keep_dispatches = 600;
-constexpr Stretch back_side{};               ///< names a reversed shape; nothing is stretched so
 constexpr std::uint64_t keep_stretched = 16; ///< where another of the same shape is made: its scale may change for ever
 
 /// Locks one part of a mesh interface for as long as it lives.
@@ -439,26 +438,18 @@ Converted ShapeCache::get_again(const btCollisionShape& shape) {
     return found->second.converted;
 }
 
-Converted ShapeCache::stretched(const Converted& converted, const Stretch& stretch) {
-    return stretch == no_stretch ? converted : remade(converted, stretch);
-}
-
-Converted ShapeCache::reversed(const Converted& converted) {
-    return remade(converted, back_side);
-}
-
-Converted ShapeCache::remade(const Converted& converted, const Stretch& stretch) {
-    const std::pair key(converted.shape.get(), stretch);
+Converted ShapeCache::stretched(const Converted& converted, const Stretch& stretch, bool reversed) {
+    if (stretch == no_stretch && !reversed) return converted;
+    const std::tuple key(converted.shape.get(), stretch, reversed);
     auto found = stretched_.find(key);
     if (found == stretched_.end()) {
         sweep();
         std::erase_if(stretched_, [&](const auto& one) {
-            return one.first.first == key.first && !in_use(one.second.converted)
+            return std::get<0>(one.first) == std::get<0>(key) && !in_use(one.second.converted)
                    && one.second.used + keep_stretched < now_;
         });
         ++made_;
-        const bool back = stretch == back_side;
-        const auto shape = stretch_shape(*converted.shape, back ? no_stretch : stretch, threads_, back);
+        const auto shape = stretch_shape(*converted.shape, stretch, threads_, reversed);
         const Converted made{shape, std::make_shared<const BulletMesh>(shape), converted.names};
         found = stretched_.emplace(key, Stretched{{made}, converted}).first;
     }

@@ -14,6 +14,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -95,10 +96,9 @@ public:
     /// The same for a shape that is asked for again and again without a body: a mesh interface or field is read anew
     /// only when its form or box changes, after forget(), or if it was not asked for in a while.
     Converted get_again(const btCollisionShape& shape);
-    /// The same, stretched; one for all that are stretched alike. Throws InputError where no mesh is left.
-    Converted stretched(const Converted& converted, const Stretch& stretch);
-    /// The same surface wound the other way: its back.
-    Converted reversed(const Converted& converted);
+    /// The same, stretched, and wound the other way if `reversed`; one for all that are made alike. Throws InputError
+    /// where no mesh is left.
+    Converted stretched(const Converted& converted, const Stretch& stretch, bool reversed = false);
     void forget(const btCollisionShape& shape) { known_.erase(&shape); }
     /// How many shapes it has made so far.
     std::uint64_t made() const { return made_; }
@@ -120,12 +120,11 @@ private:
         Converted original; ///< kept, since its shape's address is a key
     };
     Converted convert(Mesh mesh, Repair repair);
-    Converted remade(const Converted& converted, const Stretch& stretch);
 
     std::uint32_t threads_;
     std::map<Hashes, Entry> entries_; ///< by the content
     std::unordered_map<const btCollisionShape*, Known> known_;
-    std::map<std::pair<const Shape*, Stretch>, Stretched> stretched_; ///< a reversed one's stretch is all zeros
+    std::map<std::tuple<const Shape*, Stretch, bool>, Stretched> stretched_; ///< by the original, and what was done
     std::uint64_t now_ = 0, made_ = 0;
 };
 

@@ -6,7 +6,6 @@
 #include <vectors.h>
 
 #include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
-
 #include <LinearMath/btAabbUtil2.h>
 
 #include <algorithm>
@@ -145,19 +144,22 @@ void add_rounds(std::span<const RoundPair> pairs, btScalar near_by, bool ahead) 
     }
 }
 
-void LeafPair::find_passed(btScalar margin, btVector3& low, btVector3& high) const {
+LeafPair::Passed LeafPair::passed(btScalar margin) const {
     const Leaf& passing = other();
-    btVector3 low_then, high_then;
-    find_box(*passing.converted.shape, mesh().pose.inverseTimes(passing.pose), low, high);
-    find_box(*passing.converted.shape, mesh().next.inverseTimes(passing.next), low_then, high_then);
-    low.setMin(low_then);
-    high.setMax(high_then);
+    Passed found;
+    btVector3 low, high;
+    find_box(*passing.converted.shape, mesh().pose.inverseTimes(passing.pose), found.low, found.high);
+    find_box(*passing.converted.shape, mesh().next.inverseTimes(passing.next), low, high);
     // The scene lets the last motion of what has no velocity go on.
     const auto unsaid = [](const Leaf& leaf) { return leaf.next == leaf.pose ? leaf.way : btScalar(0); };
     const btScalar reach = margin + unsaid(leaf0) + unsaid(leaf1);
     const btVector3 around(reach, reach, reach);
-    low -= around;
-    high += around;
+    found.low.setMin(low);
+    found.high.setMax(high);
+    found.low -= around;
+    found.high += around;
+    found.triangles = mesh().converted.in_bullet->overlapping(found.low, found.high);
+    return found;
 }
 
 void LeafPair::add_borders(const Passed& passed, btScalar margin, btScalar reach, std::vector<Candidate>& out) const {

@@ -48,21 +48,18 @@ struct LeafPair {
     /// next dispatch, which are speculative. reach: of each candidate.
     void add_plane(const HalfSpace& space, std::optional<btScalar> near_by, btScalar reach,
                    std::vector<Candidate>& out) const;
-    /// Of a convex shape and an open mesh, both as meshes: in the mesh's frame, the box of the convex shape now and at
-    /// the next dispatch, and `margin` more.
-    void find_passed(btScalar margin, btVector3& low, btVector3& high) const;
-    /// What of the mesh is in that box.
+    /// Of a mesh and a convex shape, in the mesh's frame.
     struct Passed {
-        std::span<const std::uint32_t> triangles;
-        btVector3 low, high;
+        btVector3 low, high; ///< the box of the convex shape now and at the next dispatch, and `margin`
+        std::vector<std::uint32_t> triangles; ///< of the mesh, in that box
     };
+    Passed passed(btScalar margin) const;
     /// Where the surface ends inside the convex shape, or within `margin` of it, or will at the next dispatch: no ray
-    /// tells the way out, since the surface has no direction there.
+    /// tells the way out, since the surface has no direction there. reach: of each candidate.
     void add_borders(const Passed& passed, btScalar margin, btScalar reach, std::vector<Candidate>& out) const;
 
 private:
     friend void add_rounds(std::span<const RoundPair> pairs, btScalar near_by, bool ahead);
-
     /// normal: unit, from the other leaf to the mesh. feature_of_mesh: the key names a feature of the mesh.
     Candidate candidate(bool feature_of_mesh, int feature, const btVector3& on_mesh, const btVector3& on_other,
                         const btVector3& normal, btScalar distance) const;

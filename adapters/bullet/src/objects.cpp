@@ -294,7 +294,7 @@ void Objects::drop_body(Leaf& leaf) {
 
 void Objects::add_back(Leaf& leaf) {
     if (leaf.back.valid()) return;
-    leaf.reversed = shapes_.reversed(leaf.converted);
+    leaf.reversed = shapes_.stretched(leaf.converted, no_stretch, true);
     leaf.back = scene_.add(leaf.reversed.shape, to_pose(leaf.pose));
     if (ahead_ > 0) scene_.set_next_pose(leaf.back, to_pose(leaf.next));
 }
