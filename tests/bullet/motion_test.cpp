@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <initializer_list>
 #include <numbers>
 #include <set>
@@ -142,11 +143,14 @@ TEST(Motion, APolygonLosesWhatItsCornersExplain) {
         const Polygon wheel{sides, 0.4, 0.08, 0.5};
         const double corner = std::numbers::pi / sides, side = 0.8 * std::sin(corner), arm = 0.16;
         const double kept = (wheel.inertia + arm * std::cos(2 * corner)) / (wheel.inertia + arm);
-        // It is as slow as it is told to be only over corners, and goes a little less far.
-        const double on_paper = std::pow(kept, std::floor(2 / side));
-        const double coarse = wheel.keeps(1, 2, 60), fine = wheel.keeps(1, 2, 8000);
+        const double on_paper = std::pow(kept, std::floor(3 / side)); // at least: it slows down, and meets fewer
+        const double coarse = wheel.keeps(1, 3, 60), finer = wheel.keeps(1, 3, 240), fine = wheel.keeps(1, 3, 8000);
+        std::printf(
+            "[ counts ] %d sides keep %.3f of 1 m/s after 3 s at 60 steps a second, %.3f at 240, %.3f at 8 000; "
+            "corners explain %.3f\n",
+            sides, coarse, finer, fine, on_paper);
         EXPECT_LT(coarse, 0.8 * fine) << sides;
-        EXPECT_NEAR(fine, on_paper, 0.05) << sides;
+        EXPECT_NEAR(fine, on_paper, 0.08) << sides;
     }
 }
 

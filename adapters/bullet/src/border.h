@@ -18,7 +18,7 @@ struct BorderContact {
     btScalar distance; ///< negative: the depth
 };
 
-/// Of those edges of the border (3 t + k) that the convex shape has within `margin`, or meets before the next dispatch:
+/// margin: metres. Of those edges of the border (3 t + k) that the convex shape has within `margin`, or meets before the next dispatch:
 /// either end of what is inside. They leave by the face that is nearest there, or by one that is no farther than the
 /// margin and that the motion passes far less.
 void border_contacts(const Leaf& convex, const Leaf& mesh, std::span<const std::uint32_t> edges, double margin,
