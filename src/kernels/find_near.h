@@ -52,10 +52,11 @@ DEVICE float placed_within(READS(DirectedPair) pair, READS(ShapeHeader) shapes) 
 // Metres within which an edge must be asked: how far points may be off, and twice what the two directions of a pair
 // differ by, since poses are rigid only to 1e-4. Directions lie side by side. horizons: where edges are looked for,
 // `ahead` and half their way beyond the margins; more, ahead: null for 0. half_way: of the pairs on their way to
-// `next`; both null: they stay.
+// `next`; both null: they stay. thrown: of vertices on their way, how far one with little of its own body behind it may
+// be thrown: half the way of the pair; else null.
 KERNEL void find_margins(COUNT(count), READS(DirectedPair) pairs, READS(DirectedPair) next, READS(float) more,
                          READS(float) ahead, READS(ShapeHeader) shapes, WRITES(float) margins, WRITES(float) horizons,
-                         WRITES(DirectedPair) half_way) {
+                         WRITES(DirectedPair) half_way, WRITES(float) thrown) {
     FOR_EACH(p, count) {
         READS(DirectedPair) there = pairs + p;
         READS(DirectedPair) back = pairs + (p ^ 1u);
@@ -76,7 +77,12 @@ KERNEL void find_margins(COUNT(count), READS(DirectedPair) pairs, READS(Directed
         margins[p] =
             (more ? more[p] : 0.0f) + (placed_within(there, shapes) + (shear * sizes_of(there, shapes) + 2.0f * off));
         horizons[p] = margins[p] + (ahead ? ahead[p] : 0.0f);
-        if (next) horizons[p] += go_half_way(there, next + p, shapes, half_way + p);
+        if (!next) continue;
+        const float half = go_half_way(there, next + p, shapes, half_way + p);
+        horizons[p] += half;
+        if (!thrown) continue;
+        thrown[p] = half;
+        if (shapes[there->source].least_exit < half) horizons[p] += half;
     }
 }
 
@@ -113,9 +119,10 @@ DEVICE void place_sources(MovingLanes* lanes, uint vertices, READS(DirectedPair)
     }
 }
 
-// Their ways, of those that lie half-way.
-DEVICE void move_sources(MovingLanes* lanes, uint vertices, READS(DirectedPair) next, READS(VertexBlock) block,
-                         uint first) {
+// Their ways, of those that lie half-way. thrown: 0, or vertices with less of their own body behind them are sought so
+// much farther off.
+DEVICE void move_sources(MovingLanes* lanes, uint vertices, READS(DirectedPair) next, float thrown,
+                         READS(VertexBlock) block, uint first) {
     MovingLanes then;
     float way2[VERTICES_AT_ONCE] = {0}, turn2[VERTICES_AT_ONCE] = {0};
     place_sources(&then, vertices, next, block, first);
@@ -123,9 +130,10 @@ DEVICE void move_sources(MovingLanes* lanes, uint vertices, READS(DirectedPair) 
         FOR_LANES(k, VERTICES_AT_ONCE) {
             const float way = then.middle[i][k] - lanes->middle[i][k];
             const float turn = then.half_edge[i][k] - lanes->half_edge[i][k];
+            const float farther = block->exit[first + k] < thrown ? thrown : 0.0f;
             if (vertices != 0u) lanes->half_edge[i][k] = way;
-            lanes->reach[i][k] =
-                magnitude_of(lanes->half_edge[i][k]) + (vertices != 0u ? 0.0f : magnitude_of(way) + magnitude_of(turn));
+            lanes->reach[i][k] = magnitude_of(lanes->half_edge[i][k])
+                                 + (vertices != 0u ? farther : magnitude_of(way) + magnitude_of(turn));
             way2[k] += way * way;
             turn2[k] += turn * turn;
         }
@@ -133,7 +141,8 @@ DEVICE void move_sources(MovingLanes* lanes, uint vertices, READS(DirectedPair) 
     FOR_LANES(k, VERTICES_AT_ONCE) {
         const float way = 1.0001f * root_of(way2[k]);
         lanes->length[k] = vertices != 0u ? way : lanes->length[k];
-        lanes->away[k] = vertices != 0u ? 0.0f : way + 1.0001f * root_of(turn2[k]);
+        const float farther = block->exit[first + k] < thrown ? thrown : 0.0f;
+        lanes->away[k] = vertices != 0u ? farther : way + 1.0001f * root_of(turn2[k]);
     }
 }
 
@@ -142,8 +151,8 @@ DEVICE void move_sources(MovingLanes* lanes, uint vertices, READS(DirectedPair) 
 // will be; null: they stay. Of pairs with `ahead` (null: none) it tells, too, how far the others stay away, but of
 // nothing that is farther than that.
 KERNEL void count_edges(COUNT(count), uint vertices, READS(DirectedPair) pairs, READS(DirectedPair) next,
-                        READS(float) margins, READS(float) ahead, READS(ShapeHeader) shapes, READS(ulong) memory,
-                        WRITES(PairBlock) found_blocks, WRITES(uint) counts) {
+                        READS(float) thrown, READS(float) margins, READS(float) ahead, READS(ShapeHeader) shapes,
+                        READS(ulong) memory, WRITES(PairBlock) found_blocks, WRITES(uint) counts) {
     FOR_EACH_VERTICES(i, first, count) {
         READS(DirectedPair) pair = pairs + found_blocks[i].pair;
         READS(VertexBlock) block = source_block(pair, shapes, memory, found_blocks[i].vertex_block);
@@ -155,7 +164,10 @@ KERNEL void count_edges(COUNT(count), uint vertices, READS(DirectedPair) pairs, 
         }
         MovingLanes edges;
         place_sources(&edges, vertices, pair, block, first);
-        if (next) move_sources(&edges, vertices, next + found_blocks[i].pair, block, first);
+        if (next) {
+            const uint p = found_blocks[i].pair;
+            move_sources(&edges, vertices, next + p, thrown ? thrown[p] : 0.0f, block, first);
+        }
         const float far = ahead ? ahead[found_blocks[i].pair] : 0.0f;
         int found[VERTICES_AT_ONCE], asked[VERTICES_AT_ONCE];
         float gap[VERTICES_AT_ONCE];
@@ -213,6 +225,7 @@ STRUCT(EdgeArrays) {
     uint vertices; // 1: the sources are points
     READS(DirectedPair) pairs;
     READS(DirectedPair) next; // null: the pairs stay; else they are half-way there
+    READS(float) thrown;      // by pair, as of find_margins
     READS(float) margins;     // by pair
     READS(ShapeHeader) shapes;
     READS(ulong) memory;
@@ -305,6 +318,8 @@ DEVICE uint edges_in_lane(const EdgeGroup* group, READS(Node) node, uint lane) {
 
 DEVICE void add_edge(EdgeGroup* group, uint r, const EdgeArrays* arrays, const Ray ray) {
     SourceRay edge = source_ray(arrays->pairs + ray.pair, arrays->shapes, arrays->memory, ray.vertex_lane);
+    float farther = 0.0f;
+    if (arrays->thrown && edge.reach < arrays->thrown[ray.pair]) farther = arrays->thrown[ray.pair];
     float way2 = 0.0f, turn2 = 0.0f, passed[3] = {0.0f, 0.0f, 0.0f};
     for (int i = 0; i < 3; ++i) {
         group->way[i][r] = 0.0f;
@@ -325,7 +340,7 @@ DEVICE void add_edge(EdgeGroup* group, uint r, const EdgeArrays* arrays, const R
             turn2 += turn * turn;
         }
     }
-    const float margin = arrays->margins[ray.pair], way = 1.0001f * root_of(way2);
+    const float margin = arrays->margins[ray.pair] + farther, way = 1.0001f * root_of(way2);
     for (int i = 0; i < 3; ++i) {
         const float reach = (magnitude_of(edge.direction[i]) + passed[i]) + margin;
         group->middle[i][r] = edge.position[i];
@@ -394,10 +409,10 @@ DEVICE void cast_together(const EdgeArrays* arrays, const EdgeGroup* group, uint
 }
 
 KERNEL void cast_edges(COUNT(count), uint vertices, READS(DirectedPair) pairs, READS(DirectedPair) next,
-                       READS(float) margins, READS(ShapeHeader) shapes, READS(ulong) memory, READS(Ray) rays,
-                       WRITES(EdgeHits) hits, WRITES(uint) counts) {
+                       READS(float) thrown, READS(float) margins, READS(ShapeHeader) shapes, READS(ulong) memory,
+                       READS(Ray) rays, WRITES(EdgeHits) hits, WRITES(uint) counts) {
     // NOLINTNEXTLINE(modernize-use-nullptr): this text is C as well
-    const EdgeArrays arrays = {vertices, pairs, next, margins, shapes, memory, rays, hits, (GLOBAL NearEdge*)0};
+    const EdgeArrays arrays = {vertices, pairs, next, thrown, margins, shapes, memory, rays, hits, (GLOBAL NearEdge*)0};
     FOR_EACH_FEW(i, few, RAYS_IN_GROUP, count) {
         EdgeGroup group;
         for (uint r = 0u; r < RAYS_IN_GROUP; ++r) add_edge(&group, r, &arrays, rays[r < few ? i + r : i]);
@@ -416,8 +431,8 @@ KERNEL void cast_edges(COUNT(count), uint vertices, READS(DirectedPair) pairs, R
 
 // Edges with more faces than EdgeHits holds are cast again.
 KERNEL void write_edges(COUNT(count), uint vertices, READS(DirectedPair) pairs, READS(DirectedPair) next,
-                        READS(float) margins, READS(ShapeHeader) shapes, READS(ulong) memory, READS(Ray) rays,
-                        READS(EdgeHits) hits, READS(uint) firsts, WRITES(NearEdge) near) {
+                        READS(float) thrown, READS(float) margins, READS(ShapeHeader) shapes, READS(ulong) memory,
+                        READS(Ray) rays, READS(EdgeHits) hits, READS(uint) firsts, WRITES(NearEdge) near) {
     FOR_EACH(i, count) {
         const uint found = hits[i].count;
         if (found == 0u) continue;
@@ -427,7 +442,8 @@ KERNEL void write_edges(COUNT(count), uint vertices, READS(DirectedPair) pairs, 
         if (found > EDGE_FACES) {
             // NOLINTNEXTLINE(modernize-use-nullptr): this text is C as well
             GLOBAL EdgeHits* none = (GLOBAL EdgeHits*)0;
-            const EdgeArrays arrays = {vertices, pairs, next, margins, shapes, memory, rays, none, near + firsts[i]};
+            const EdgeArrays arrays = {vertices, pairs,  next, thrown, margins,
+                                       shapes,   memory, rays, none,   near + firsts[i]};
             EdgeGroup group;
             for (uint r = 0u; r < RAYS_IN_GROUP; ++r) add_edge(&group, r, &arrays, ray);
             cast_together(&arrays, &group, 1u, i);

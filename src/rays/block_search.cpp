@@ -82,12 +82,12 @@ void BlockSearch::count_rays(const Update& update, const Array<kernels::Directed
 }
 
 void BlockSearch::count_edges(const Update& update, const Array<kernels::DirectedPair>& pairs,
-                              const Array<kernels::DirectedPair>& next, const Array<float>& margins,
-                              const Array<float>& ahead, const Array<kernels::Totals>& totals, std::size_t at,
-                              std::size_t room) {
+                              const Array<kernels::DirectedPair>& next, const Array<float>& thrown,
+                              const Array<float>& margins, const Array<float>& ahead,
+                              const Array<kernels::Totals>& totals, std::size_t at, std::size_t room) {
     const ShapeStore::Arrays& arrays = update.arrays();
-    launch<KernelId::count_edges>(update.device, found_, sources_ == Sources::points ? 1u : 0u, pairs, next, margins,
-                                  ahead, arrays.headers, arrays.memory, blocks_, ray_counts_.values());
+    launch<KernelId::count_edges>(update.device, found_, sources_ == Sources::points ? 1u : 0u, pairs, next, thrown,
+                                  margins, ahead, arrays.headers, arrays.memory, blocks_, ray_counts_.values());
     ray_counts_.scan(update.device, found_, totals, at, room);
 }
 

@@ -39,8 +39,8 @@ public:
     /// be at the next step; if empty they stay. ahead: of which pairs clear() will be asked, and up to how far; may be
     /// empty.
     void count_edges(const Update& update, const Array<kernels::DirectedPair>& pairs,
-                     const Array<kernels::DirectedPair>& next, const Array<float>& margins, const Array<float>& ahead,
-                     const Array<kernels::Totals>& totals, std::size_t at, std::size_t room);
+                     const Array<kernels::DirectedPair>& next, const Array<float>& thrown, const Array<float>& margins,
+                     const Array<float>& ahead, const Array<kernels::Totals>& totals, std::size_t at, std::size_t room);
     /// Of edges, in memory that host and device share: how far pair p can move before one that is not cast comes within
     /// its margin, metres; margin: with half the way to the next step.
     double clear(std::size_t p, float margin, float tolerance);

@@ -27,21 +27,24 @@ void NearRays::cast(const Update& update, const Array<kernels::DirectedPair>& pa
     const std::size_t room = std::max(rays_.size(), least_room);
     resize(device, pairs.size(), margins_, horizons_);
     half_way_.resize(device, next.size());
+    thrown_.resize(device, vertices != 0 ? next.size() : 0);
     resize(device, room, rays_, hits_);
     counts_.resize(device, 1, room);
     launch<KernelId::find_margins>(device, pairs.size(), pairs, next, reach.more, reach.ahead, arrays.headers, margins_,
-                                   horizons_, half_way_);
+                                   horizons_, half_way_, thrown_);
     const Array<kernels::DirectedPair>& placed = next.size() > 0 ? half_way_ : pairs;
     search_.find(update, placed, horizons_, reach.least, totals, sum(RayBatch::edge_block_sum));
-    search_.count_edges(update, placed, next, margins_, reach.ahead, totals, sum(RayBatch::edge_ray_sum), room);
+    search_.count_edges(update, placed, next, thrown_, margins_, reach.ahead, totals, sum(RayBatch::edge_ray_sum),
+                        room);
     search_.write_rays(update, totals, sum(RayBatch::edge_ray_sum), 0, rays_);
     const Count count = results_of(totals, sum(RayBatch::edge_ray_sum), room);
-    launch<KernelId::cast_edges>(device, count, vertices, placed, next, margins_, arrays.headers, arrays.memory, rays_,
-                                 hits_, counts_.values());
+    launch<KernelId::cast_edges>(device, count, vertices, placed, next, thrown_, margins_, arrays.headers,
+                                 arrays.memory, rays_, hits_, counts_.values());
     const Array<kernels::NearEdge>& found = found_.room(device);
     counts_.scan(device, count, totals, sum(RayBatch::edge_sum), found.size());
     launch<KernelId::write_edges>(device, items_of(totals, sum(RayBatch::edge_sum), room), vertices, placed, next,
-                                  margins_, arrays.headers, arrays.memory, rays_, hits_, counts_.firsts(), found);
+                                  thrown_, margins_, arrays.headers, arrays.memory, rays_, hits_, counts_.firsts(),
+                                  found);
 }
 
 bool NearRays::had_room(Device& device, const RayBatch& batch) {
@@ -60,7 +63,8 @@ void NearRays::rest() {
 }
 
 std::uint64_t NearRays::bytes() const {
-    return search_.bytes() + 2 * margins_.size() * sizeof(float) + half_way_.size() * sizeof(kernels::DirectedPair)
+    return search_.bytes() + (2 * margins_.size() + thrown_.size()) * sizeof(float)
+           + half_way_.size() * sizeof(kernels::DirectedPair)
            + ray_count_ * (sizeof(kernels::Ray) + sizeof(kernels::EdgeHits) + 2 * sizeof(kernels::uint))
            + found_.values().size_bytes();
 }

@@ -42,7 +42,7 @@ private:
 
     BlockSearch search_;
     BlockSearch::Sources sources_;
-    Array<float> margins_, horizons_; ///< by directed pair
+    Array<float> margins_, horizons_, thrown_; ///< by directed pair
     Array<kernels::DirectedPair> half_way_;
     Array<kernels::Ray> rays_;
     Array<kernels::EdgeHits> hits_;

@@ -143,12 +143,15 @@ std::shared_ptr<const Shape> Shape::make(PreparedMesh mesh, std::uint32_t thread
     shape.header.triangle_block_count = static_cast<kernels::uint>(shape.triangle_blocks.size());
 
     shape.exit_distances = measure_exits(shape, normals, executor);
-    float longest_exit = 0;
-    for (const float exit : shape.exit_distances)
+    float longest_exit = 0, shortest_exit = UNBOUNDED;
+    for (const float exit : shape.exit_distances) {
+        if (exit > 0) shortest_exit = std::min(shortest_exit, exit);
         if (std::isfinite(exit))
             longest_exit = std::max(longest_exit, exit);
         else
             shape.rays_end = false;
+    }
+    shape.header.least_exit = shortest_exit;
     shape.header.ray_reach = longest_exit > 0 ? longest_exit : static_cast<float>(shape.diagonal);
     normals = {};
     const bool large = shape.mesh.triangles.size() > many_triangles;

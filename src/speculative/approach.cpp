@@ -43,7 +43,11 @@ Approaches::Approaches(const SpeculativePair& pair, Side side, std::uint32_t ver
     : body_(pair.bodies[static_cast<std::size_t>(side)]), target_(body_.target), vertex_(vertex),
       faces_(faces), way_{transform_point(body_.now, body_.source.point(vertex)),
                           transform_point(body_.next, body_.source.point(vertex))},
-      from_(way_[0]), to_(way_[1]), margin_(pair.margin), perturbation_(pair.perturbation) {}
+      from_(way_[0]), to_(way_[1]), margin_(pair.margin), reach_(pair.margin), perturbation_(pair.perturbation) {
+    // Deeper in than its own body is thick its ray tells nothing.
+    if (body_.moves && double(body_.source.exit_distances[vertex]) < body_.thrown)
+        reach_ = std::max(margin_, body_.thrown);
+}
 
 void Approaches::leave(const Vec3& normal, double depth) {
     const double out = depth + 2 * perturbation_;
@@ -98,7 +102,7 @@ std::optional<Approach> Approaches::first_met() const {
 // Whether every list of faces has what lies at a point.
 bool Approaches::is_listed(const Vec3& point) const {
     if (from_ == way_[0] && to_ == way_[1]) return true;
-    return length(point - nearest_of(point, way_[0], way_[1], way_[1]).point) <= margin_;
+    return length(point - nearest_of(point, way_[0], way_[1], way_[1]).point) <= reach_;
 }
 
 // Of the places around: an edge is one with both its faces, a corner with all that it shares an edge with.
@@ -118,22 +122,25 @@ bool Approaches::is_nearest(std::uint32_t face, const NearestPoint& point) const
 
 void Approaches::add_near(std::vector<Approach>& found) const {
     const std::size_t first = found.size();
-    const Box within = box_of(from_, from_, margin_);
+    const Box within = box_of(from_, from_, reach_);
+    const Vec3 way = to_ - from_;
     for (const NearEdge& near : faces_) {
         const std::uint32_t face = near.face;
         const Vec3 a = target_.corner(face, 0), b = target_.corner(face, 1), c = target_.corner(face, 2);
         if (!Box{least(a, least(b, c)), most(a, most(b, c))}.touches(within)) continue;
         // A direction in the cone of an edge or corner is in front of one of its faces.
         const Vec3 area = cross(b - a, c - a);
-        const double height = dot(from_ - a, area), reach = height < 0 ? perturbation_ : margin_;
+        const double height = dot(from_ - a, area), reach = height < 0 ? perturbation_ : reach_;
         if (height * height > reach * reach * dot(area, area)) continue;
         const NearestPoint point = nearest_of(from_, a, b, c);
         const Vec3 off = from_ - point.point;
         const double gap = length(off);
-        if (gap > margin_ || !is_listed(point.point) || !is_nearest(face, point)) continue;
+        if (gap > reach_ || !is_listed(point.point) || !is_nearest(face, point)) continue;
         const bool is_border = point.edges != 0 && gap > perturbation_;
         if (is_border && !(dot(off, border_normal(target_, face, point.edges)) > 0)) continue;
         const Vec3 normal = is_border ? (1 / gap) * off : unit(area);
+        // Beyond the margin it stops what is thrown there, but nothing that goes on.
+        if (gap > margin_ && (passed_by(normal, gap, way) > 0 || gap + dot(normal, way) > body_.thrown)) continue;
         found.push_back(stopped({face, normal, gap}, point.point));
     }
     std::ranges::sort(found.begin() + static_cast<std::ptrdiff_t>(first), found.end(), {},

@@ -59,9 +59,9 @@ private:
     const ShapeData& target_;
     std::uint32_t vertex_;
     std::span<const NearEdge> faces_;
-    std::array<Vec3, 2> way_; ///< of the vertex, which the faces are of
-    Vec3 from_, to_;          ///< the way that is asked of
-    double margin_, perturbation_;
+    std::array<Vec3, 2> way_;              ///< of the vertex, which the faces are of
+    Vec3 from_, to_;                       ///< the way that is asked of
+    double margin_, reach_, perturbation_; ///< reach_: how far off places count, at least the margin
 };
 
 } // namespace raycontact

@@ -23,7 +23,8 @@ inline Box box_of(const Vec3& p, const Vec3& q, double around) {
 struct OneWay {
     const ShapeData &source, &target;
     Pose now, next;
-    bool moves; ///< a point may go farther than the margin until the next step
+    bool moves;    ///< a point may go farther than the margin until the next step
+    double thrown; ///< how far what stops the body elsewhere may turn a point from its way, metres
 };
 
 /// A pair whose speculative contacts are asked for (docs/internals/speculative.md): what is nearer than a margin, and

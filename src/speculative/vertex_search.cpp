@@ -70,7 +70,8 @@ void VertexSearch::find(const SpeculativePair& pair, Side side, std::uint32_t ve
         found.push_back({side, has_other ? FeatureKind::vertex_face : FeatureKind::vertex, vertex, one.face, p,
                          one.normal, -one.gap, one.when});
     }
-    if (met && touches == nullptr && found.size() == first) followers_.push_back({vertex, p, *met});
+    if (touches != nullptr || found.size() > first || approaches_.empty()) return;
+    if (met || approaches_.front().gap > pair.margin) followers_.push_back({vertex, p, approaches_.front()});
 }
 
 // What follows behind a vertex, against the same plane, meets it as soon as the body turns about that vertex.
