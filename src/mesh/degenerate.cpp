@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <ranges>
 #include <tuple>
 #include <unordered_map>
 #include <utility>
@@ -30,6 +31,8 @@ Triangle turned(Triangle t) {
     std::rotate(t.begin(), std::ranges::min_element(t), t.end());
     return t;
 }
+
+constexpr std::uint32_t none = 0xffffffffu;
 
 class Dropper {
 public:
@@ -63,12 +66,19 @@ private:
         std::vector<std::uint32_t> copies;
         flat_.resize(triangles_.size());
         std::vector<Triangle> wound(triangles_);
-        for (Triangle& t : wound) t = turned(t);
-        const std::vector<std::uint32_t> lowest = lowest_equal(wound);
+        for (Triangle& t : wound) t = sorted(t);
+        std::vector<std::uint32_t> lowest = lowest_equal(wound);
+        if (std::ranges::any_of(std::views::iota(std::size_t{0}, lowest.size()),
+                                [&](std::size_t t) { return lowest[t] != t; })) {
+            drop_backs(lowest);
+            for (std::size_t t = 0; t < wound.size(); ++t) wound[t] = turned(triangles_[t]);
+            lowest = lowest_equal(wound);
+        }
         const InterruptionCheck check;
         for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
             check();
             flat_[t] = is_degenerate(triangles_[t], vertices_);
+            if (dropped(t)) continue;
             if (has_repeated(triangles_[t]))
                 drop(t);
             else if (flat_[t])
@@ -84,6 +94,40 @@ private:
                 drop(t);
             else
                 candidates_.push_back(t);
+        }
+    }
+
+    /// Of a part, connected over edges, whose triangles all lie back to back with one other, the later ones go where
+    /// the rest is closed. same: of each triangle the first with its vertices.
+    void drop_backs(std::span<const std::uint32_t> same) {
+        std::vector<std::uint32_t> back(triangles_.size(), none); // of the first its only other, of that the first
+        std::vector<char> stays(triangles_.size(), 0);
+        for (std::uint32_t t = 0; t < same.size(); ++t) {
+            const std::uint32_t first = same[t];
+            if (first == t) continue;
+            Triangle other = triangles_[t];
+            std::swap(other[1], other[2]);
+            const bool is_back = back[first] == none && turned(other) == turned(triangles_[first]);
+            if (!is_back) stays[first] = stays[t] = 1;
+            back[t] = first;
+            back[first] = t;
+        }
+        DisjointSets parts;
+        parts.reset(triangles_.size());
+        std::vector<std::uint32_t> apart; // edges that stay open
+        const std::vector<HalfEdge> edges = sorted_half_edges(triangles_);
+        for_each_edge(edges, [&](std::span<const HalfEdge> sides) {
+            for (const HalfEdge& side : sides) parts.join(side.triangle(), sides[0].triangle());
+            if (sides.size() % 4 != 0) apart.push_back(sides[0].triangle());
+        });
+        for (const std::uint32_t t : apart) stays[t] = 1;
+        std::vector<char> part_stays(triangles_.size(), 0);
+        for (std::uint32_t t = 0; t < triangles_.size(); ++t)
+            if (stays[t] || back[t] == none || has_repeated(triangles_[t])) part_stays[parts.of(t)] = 1;
+        for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+            if (part_stays[parts.of(t)] || back[t] > t) continue;
+            result_.triangles[t] = 1;
+            ++result_.back_to_back;
         }
     }
 

@@ -9,6 +9,7 @@
 #include "mesh/lowest_equal.h"
 #include "mesh/nesting.h"
 #include "mesh/predicates.h"
+#include "mesh/stitch.h"
 #include "number_text.h"
 
 #include <algorithm>
@@ -63,9 +64,26 @@ void drop_triangles(PreparedMesh& prepared, std::span<const Vec3> vertices) {
     std::vector<std::string>& repairs = prepared.report.repairs;
     if (dropped.degenerate > 0) repairs.push_back("dropped " + counted(dropped.degenerate, "degenerate triangle"));
     if (dropped.duplicate > 0) repairs.push_back("dropped " + counted(dropped.duplicate, "duplicate triangle"));
+    if (dropped.back_to_back > 0)
+        repairs.push_back("dropped " + counted(dropped.back_to_back, "triangle") + " back to back with another");
     if (dropped.split > 0)
         repairs.push_back("split " + counted(dropped.split, "triangle") + " at a corner of another, in place of "
                           + counted(dropped.split, "degenerate triangle"));
+}
+
+/// Splits triangles at the T-junctions of borders, and reports how many. The pieces of a triangle have its index.
+void stitch(PreparedMesh& prepared, std::span<const Vec3> vertices) {
+    const Stitched stitched = stitch_borders(prepared.triangles, vertices);
+    if (stitched.given_up)
+        prepared.report.repairs.push_back("left T-junctions as they are: too many vertices lie on borders of others");
+    if (stitched.at == 0) return;
+    std::vector<std::uint32_t> index;
+    for (const std::uint32_t t : stitched.of) index.push_back(prepared.triangle_index[t]);
+    prepared.triangles = stitched.triangles;
+    prepared.triangle_index = std::move(index);
+    prepared.report.repairs.push_back(
+        "split " + counted(stitched.split, "triangle") + " at " + counted(stitched.at, "T-junction")
+        + (stitched.farthest > 0 ? ", up to " + text_of(stitched.farthest) + " m beside its edge" : ""));
 }
 
 /// Replaces file vertices by the distinct ones in use.
@@ -123,7 +141,10 @@ PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair, Nesting nesting, Chec
     check_mesh(mesh, name);
     check_reach(mesh, name);
     PreparedMesh prepared = weld(mesh);
-    if (repair == Repair::allowed) drop_triangles(prepared, mesh.vertices);
+    if (repair == Repair::allowed) {
+        drop_triangles(prepared, mesh.vertices);
+        stitch(prepared, mesh.vertices);
+    }
     number_vertices(mesh, prepared);
 
     Executor executor(threads_for(prepared.triangles.size(), threads));

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 
 namespace raycontact {
 
@@ -39,15 +40,26 @@ void of_vertex(Contact& contact, const SpeculativePair& pair) {
 }
 
 void of_edges(Contact& contact, const SpeculativePair& pair) {
-    const auto edge = [](const ShapeData& shape, std::uint32_t index) {
-        const std::uint32_t triangle = number_of(shape.mesh.triangle_index, index / 3);
-        return triangle == NONE ? NONE : 3 * triangle + index % 3;
+    // Of a triangle that was split at T-junctions the piece whose edge is nearest: all have its number.
+    const auto edge = [&](const PlacedBody& body, std::uint32_t index) {
+        const ShapeData& shape = body.shape->data();
+        std::uint32_t nearest = NONE;
+        double least = std::numeric_limits<double>::infinity();
+        const std::span<const std::uint32_t> numbers = shape.mesh.triangle_index;
+        const Vec3 at = rotated_back(body.centred.rotation, contact.point_a - body.centred.translation);
+        for (std::uint32_t t = number_of(numbers, index / 3); t < numbers.size() && numbers[t] == index / 3; ++t) {
+            const Vec3 from = shape.corner(t, index % 3), to = shape.corner(t, (index + 1) % 3);
+            const double away = length(at - nearest_of(at, from, to, to).point);
+            if (away < least) nearest = 3 * t + index % 3;
+            least = std::min(least, away);
+        }
+        return nearest;
     };
     const Pose& frame = pair.b.centred;
     FeatureContact found{Side::a,
                          FeatureKind::edges,
-                         edge(pair.bodies[0].source, contact.feature.index_a),
-                         edge(pair.bodies[0].target, contact.feature.index_b),
+                         edge(pair.a, contact.feature.index_a),
+                         edge(pair.b, contact.feature.index_b),
                          rotated_back(frame.rotation, contact.point_a - frame.translation),
                          -1.0 * rotated_back(frame.rotation, Vec3(contact.normal)),
                          double(contact.depth)};

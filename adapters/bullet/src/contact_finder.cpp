@@ -182,7 +182,12 @@ bool ContactFinder::is_on_side(Candidate& c, const Entry& entry) const {
     // Of corners 0, 1, 2 the back has 0, 2, 1.
     if (entry.sides == Sides::back) edge += 2 - 2 * (edge % 3);
     c.triangle = c.key.other;
-    return !border.edges[3 * local(shape.triangle_index(), edge / 3) + static_cast<std::size_t>(edge % 3)];
+    // The pieces of a triangle that was split at a T-junction have its number.
+    const auto file = static_cast<std::uint32_t>(edge / 3);
+    for (std::size_t t = local(shape.triangle_index(), edge / 3);
+         t < shape.triangle_index().size() && shape.triangle_index()[t] == file; ++t)
+        if (border.edges[3 * t + static_cast<std::size_t>(edge % 3)]) return false;
+    return true;
 }
 
 // A feature of the mesh leaves the convex shape on one side, by less. A vertex of the shape may lie between a front and

@@ -60,6 +60,25 @@ TEST(Prepare, WeldsByPlaceAndKeepsTheLowestIndex) {
     EXPECT_EQ(prepared.report.volume, 0);
 }
 
+TEST(Prepare, ASolidThatIsThereTwiceBackToBackIsOne) {
+    Mesh mesh = torus(12, 8, 1, 0.4), back = mesh;
+    turn_over(back);
+    append(mesh, back);
+    const MeshReport report = prepare_mesh(mesh).report, once = prepare_mesh(torus(12, 8, 1, 0.4)).report;
+    EXPECT_TRUE(report.outward);
+    EXPECT_EQ(report.triangles, once.triangles);
+    EXPECT_DOUBLE_EQ(report.volume, once.volume);
+    EXPECT_EQ(report.repairs, (std::vector<std::string>{"dropped 192 triangles back to back with another"}));
+    EXPECT_EQ(prepare_mesh(mesh, Repair::as_is).report.triangles, 384u);
+    // A sheet with two sides has no inside either way; it stays. So do the two halves of a lens that share a disc.
+    Mesh sheet{"sheet", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}, {2, 1, 0}, {3, 2, 0}}};
+    EXPECT_EQ(prepare_mesh(sheet).report.triangles, 4u);
+    Mesh halves{"halves",
+                {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -1}},
+                {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {0, 1, 2}, {1, 0, 4}, {2, 1, 4}, {0, 2, 4}}};
+    EXPECT_EQ(prepare_mesh(halves).report.triangles, 8u);
+}
+
 TEST(Prepare, DropsDegenerateAndDuplicateTrianglesOnlyWhenAllowed) {
     Mesh mesh = box();
     mesh.vertices.push_back({0.25, 0, 0}); // on the edge from 0 to 1

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <raycontact/pose.h>
+
+#include "mesh/adjacency.h"
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace raycontact {
+
+/// What was done about T-junctions.
+struct Stitched {
+    std::vector<Triangle> triangles; ///< all; the pieces of one follow each other, each in its place
+    std::vector<std::uint32_t> of;   ///< which of those given each one is, or is a piece of
+    std::size_t split = 0, at = 0;   ///< triangles that were split, and at how many vertices
+    double farthest = 0;             ///< metres from its edge that such a vertex lay
+    bool given_up = false;           ///< some were not sought: too many lie near too many edges
+};
+
+/// Splits triangles at vertices of borders that lie on their border edges, up to the last digits of the coordinates:
+/// two of the three that they are rounded by, but no more than 1e-4 of the box's diagonal. Corner k of a triangle, and
+/// the edge from there on, is that of its pieces where they have a part of it. Equal vertices must have equal indices.
+Stitched stitch_borders(std::span<const Triangle> triangles, std::span<const Vec3> vertices);
+
+} // namespace raycontact
