@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Speculative contacts against the reference; what they leave as it is; what a body is expected to do.
 #include "property/speculative_reference.h"
+#include "reference/meshes.h"
 
 #include <raycontact/error.h>
 #include <raycontact/query.h>
@@ -414,6 +415,58 @@ TEST(Speculative, ABodyMayHaveAMarginOfItsOwn) {
         EXPECT_EQ(pairs_of(), 0u) << "another body in its slot";
         EXPECT_THROW(scene.set_speculative_margin(left, 0.02), InputError);
     }
+}
+
+// The lowest corner of a turning plate, which its motion lifts a little: where something stops the plate elsewhere it
+// comes down by up to half the plate's way. Of a block as large, that is thicker than that, no such place is told.
+TEST(Speculative, AThinBodySeesAsFarAsItMayBeThrown) {
+    Random random(65);
+    const Mesh slab_mesh = box_mesh({2, 2, 0.25});
+    const auto slab = Shape::make(slab_mesh);
+    std::size_t told = 0, beyond = 0;
+    for (int i = 0; i < 400; ++i) {
+        const bool thin = i % 4 != 0;
+        const Mesh mesh = box_mesh({0.15, 0.1, thin ? 0.0005 + 0.0015 * random.uniform() : 0.1});
+        Pose now = random.rotation();
+        const auto lowest_of = [&](const Pose& pose) {
+            return *std::ranges::min_element(mesh.vertices, {},
+                                             [&](const Vec3& v) { return transform_point(pose, v).z; });
+        };
+        const Vec3 lowest = lowest_of(now);
+        const Pose turned = moved(now, 0.6, random);
+        const double gap = 0.002 + 0.03 * random.uniform();
+        now.translation = Vec3{0, 0, 0.25 + gap} - transform_point(now, lowest);
+        Pose next = turned;
+        next.translation = {};
+        next.translation = Vec3{0, 0, 0.25 + gap + 0.0005} - transform_point(next, lowest);
+        // What the motion passes is told anyway.
+        if (lowest_of(next) != lowest) continue;
+        double way = 0;
+        for (const Vec3& v : mesh.vertices)
+            way = std::max(way, length(transform_point(next, v) - transform_point(now, v)));
+        for (const Method method : {Method::standard, Method::certified}) {
+            Settings settings = speculative_settings();
+            settings.method = method;
+            settings.speculative_margin = 0.001;
+            Scene scene(settings);
+            const BodyId plate = scene.add(Shape::make(mesh), now), below = scene.add(slab);
+            scene.set_next_pose(plate, next);
+            const auto corner =
+                static_cast<std::uint32_t>(std::ranges::find(mesh.vertices, lowest) - mesh.vertices.begin());
+            const bool is_told =
+                std::ranges::any_of(scene.find_contacts(std::array{std::pair(plate, below)}), [&](const Contact& c) {
+                    return c.feature.source == Side::a && c.feature.source_index() == corner
+                           && std::fabs(double(c.depth) + gap) < 1e-6;
+                });
+            EXPECT_TRUE(is_told || !(thin && gap < 0.4 * way)) << i << ' ' << gap << ' ' << way;
+            EXPECT_FALSE(is_told && (!thin || gap > 0.75 * way)) << i << ' ' << gap << ' ' << way;
+            told += is_told;
+            beyond += !is_told;
+        }
+    }
+    std::printf("[ thin     ] %zu told, %zu not\n", told, beyond);
+    EXPECT_GT(told, 50u);
+    EXPECT_GT(beyond, 50u);
 }
 
 TEST(Speculative, BadMarginsAreRefused) {
