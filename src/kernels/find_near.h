@@ -78,11 +78,11 @@ KERNEL void find_margins(COUNT(count), READS(DirectedPair) pairs, READS(Directed
             (more ? more[p] : 0.0f) + (placed_within(there, shapes) + (shear * sizes_of(there, shapes) + 2.0f * off));
         horizons[p] = margins[p] + (ahead ? ahead[p] : 0.0f);
         if (!next) continue;
-        const float half = go_half_way(there, next + p, shapes, half_way + p);
-        horizons[p] += half;
+        const float from_there = go_half_way(there, next + p, shapes, half_way + p);
+        horizons[p] += from_there;
         if (!thrown) continue;
-        thrown[p] = half;
-        if (shapes[there->source].least_exit < half) horizons[p] += half;
+        thrown[p] = from_there;
+        if (shapes[there->source].least_exit < from_there) horizons[p] += from_there;
     }
 }
 

@@ -60,9 +60,9 @@ bool is_inside_its_hull(const Update& update, const PlacedBody& body) {
 
 // The same of what is near, now and, if the pair hurries, on its way.
 bool extend_near(const Update& update, const PlacedBody& a, const PlacedBody& b, CertifiedPair& state, Slack& slack,
-                 bool hurries) {
+                 bool hurries, double thrown) {
     if (!is_inside_its_hull(update, a) || !is_inside_its_hull(update, b)) return false;
-    const double needed = std::max(rounding_margin(a, b), rounding_margin(b, a)) + double(slack.margin);
+    const double needed = std::max(rounding_margin(a, b), rounding_margin(b, a)) + double(slack.margin) + thrown;
     const double gap = state.normal_of_near.gap(a, b, needed, hurries);
     if (!(gap > needed)) return false;
     slack.edges = slack.points = edge_share * (gap - needed);
@@ -141,6 +141,11 @@ void DuePairs::check_slice(const Update& update, CertifiedPairs& table, std::uin
         const double way = speculative ? update.motion.pair_way(update.pairs[i]) : 0;
         return way > double(slack.margin) ? way : 0;
     };
+    // How much farther than the margin some vertices are asked: half the way, where a body is thinner than that.
+    const auto thrown_of = [](const Slack& slack, double way) {
+        const double thrown = 0.501 * way;
+        return double(slack.least_exit) < thrown ? thrown : 0;
+    };
     const auto wants = [&](std::uint32_t i, Slack& slack) {
         const Motion::Bound bound = update.motion.pair_bound(update.pairs[i]);
         slack.metres -= bound.moved;
@@ -148,7 +153,8 @@ void DuePairs::check_slice(const Update& update, CertifiedPairs& table, std::uin
         slack.points -= bound.nearer;
         if (!(slack.metres > 0) || slack.casts) return true;
         const double way = way_of(i, slack);
-        return (edges && is_due(slack.edges, way)) || (speculative && is_due(slack.points, way));
+        return (edges && is_due(slack.edges, way))
+               || (speculative && is_due(slack.points, way + thrown_of(slack, way)));
     };
     const auto ask = [&](std::uint32_t i) {
         const SlotPair& pair = update.pairs[i];
@@ -169,11 +175,16 @@ void DuePairs::check_slice(const Update& update, CertifiedPairs& table, std::uin
             check_pair(update, table, i, speed, slice);
         }
         if (!edges && !speculative) return;
-        if (speculative) slack.margin = static_cast<float>(1.000001 * speculative_margin(update.settings, a, b));
-        const double way = way_of(i, slack);
+        if (speculative) {
+            slack.margin = static_cast<float>(1.000001 * speculative_margin(update.settings, a, b));
+            slack.least_exit = std::min(a.shape->data().header.least_exit, b.shape->data().header.least_exit);
+        }
+        const double way = way_of(i, slack), thrown = thrown_of(slack, way);
         const DueNear due{
-            i, size, speed, speculative && is_due(slack.points, way), edges && is_due(slack.edges, way), way > 0, once};
-        if ((due.points || due.edges) && !slack.casts && extend_near(update, a, b, state, slack, way > 0)) return;
+            i,       size, speed, speculative && is_due(slack.points, way + thrown), edges && is_due(slack.edges, way),
+            way > 0, once};
+        if ((due.points || due.edges) && !slack.casts && extend_near(update, a, b, state, slack, way > 0, thrown))
+            return;
         if (due.points || due.edges || !slack.all) slice.near.add() = due;
     };
     table.sift(

@@ -49,6 +49,7 @@ struct Slack {
     double edges = -1;       ///< that it may come nearer before its near edges are sought anew
     double points = -1;      ///< the same of its near vertices
     float margin = 0;        ///< within which it has speculative contacts
+    float least_exit = 0;    ///< of both shapes: what is thinner sees farther (docs/internals/speculative.md)
     bool known = false;      ///< it was asked about in a step before
     bool open = false;       ///< it has lists
     bool casts = false;      ///< it has rays, to be decided in every step
