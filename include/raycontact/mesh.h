@@ -61,7 +61,7 @@ RAYCONTACT_API Mesh weld_mesh(Mesh mesh, double length);
 /// What a mesh is, after the repairs it names.
 struct MeshReport {
     std::uint64_t vertices = 0;       ///< distinct positions in use by a triangle
-    std::uint64_t triangles = 0;      ///< kept
+    std::uint64_t triangles = 0;      ///< kept, and pieces of those that were split
     std::uint64_t file_vertices = 0;  ///< as in the file
     std::uint64_t file_triangles = 0; ///< as in the file, polygons split
     bool closed = false; ///< every edge has a triangle on both sides (each edge met an even number of times, >= 2)
@@ -83,7 +83,7 @@ struct MeshReport {
 enum class Repair {
     allowed, ///< drop degenerate and duplicate triangles, which never opens a closed edge (where a degenerate one joins
              ///< a corner with the side of a triangle on which it lies, that triangle is split at the corner); make
-             ///< windings agree; turn components as Nesting has it
+             ///< windings agree; turn components as Nesting has it; stitch T-junctions (docs/conventions.md, T-junctions)
     as_is,   ///< change nothing; connectivity is still found by exact position
 };
 
@@ -109,7 +109,7 @@ struct PreparedMesh {
     std::vector<Vec3> vertices;                          ///< distinct positions, in order of their lowest file index
     std::vector<std::array<std::uint32_t, 3>> triangles; ///< indices into vertices
     std::vector<std::uint32_t> vertex_index;   ///< file index (the lowest, where several were welded) of each vertex
-    std::vector<std::uint32_t> triangle_index; ///< file index of each triangle
+    std::vector<std::uint32_t> triangle_index; ///< file index of each triangle, ascending; of pieces that of the whole
     MeshReport report;                         ///< what it is, and what was repaired
 };
 

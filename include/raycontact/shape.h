@@ -50,7 +50,7 @@ public:
     /// Indices into vertices().
     std::span<const std::array<std::uint32_t, 3>> triangles() const noexcept;
     std::span<const std::uint32_t> vertex_index() const noexcept;   ///< file index of each vertex
-    std::span<const std::uint32_t> triangle_index() const noexcept; ///< file index of each triangle
+    std::span<const std::uint32_t> triangle_index() const noexcept; ///< the same of each triangle, ascending
     Vec3 centre() const noexcept;                                   ///< middle of the box, body frame
     Vec3 box_min() const noexcept;                                  ///< body frame
     Vec3 box_max() const noexcept;                                  ///< body frame

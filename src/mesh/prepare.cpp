@@ -71,21 +71,6 @@ void drop_triangles(PreparedMesh& prepared, std::span<const Vec3> vertices) {
                           + counted(dropped.split, "degenerate triangle"));
 }
 
-/// Splits triangles at the T-junctions of borders, and reports how many. The pieces of a triangle have its index.
-void stitch(PreparedMesh& prepared, std::span<const Vec3> vertices) {
-    const Stitched stitched = stitch_borders(prepared.triangles, vertices);
-    if (stitched.given_up)
-        prepared.report.repairs.push_back("left T-junctions as they are: too many vertices lie on borders of others");
-    if (stitched.at == 0) return;
-    std::vector<std::uint32_t> index;
-    for (const std::uint32_t t : stitched.of) index.push_back(prepared.triangle_index[t]);
-    prepared.triangles = stitched.triangles;
-    prepared.triangle_index = std::move(index);
-    prepared.report.repairs.push_back(
-        "split " + counted(stitched.split, "triangle") + " at " + counted(stitched.at, "T-junction")
-        + (stitched.farthest > 0 ? ", up to " + text_of(stitched.farthest) + " m beside its edge" : ""));
-}
-
 /// Replaces file vertices by the distinct ones in use.
 void number_vertices(const Mesh& mesh, PreparedMesh& prepared) {
     std::vector<std::uint32_t> number(mesh.vertices.size(), 0);
@@ -101,6 +86,24 @@ void number_vertices(const Mesh& mesh, PreparedMesh& prepared) {
     for (Triangle& t : prepared.triangles) {
         for (std::uint32_t& v : t) v = number[v];
     }
+}
+
+/// Splits triangles at the T-junctions of borders, and reports how many; whether any. The pieces of a triangle have its
+/// index.
+bool stitch(PreparedMesh& prepared, std::span<const HalfEdge> edges) {
+    const Stitched stitched = stitch_borders(prepared.triangles, prepared.vertices, edges);
+    std::vector<std::string>& repairs = prepared.report.repairs;
+    if (stitched.given_up)
+        repairs.push_back("left T-junctions as they are: too many vertices lie on borders of others");
+    if (stitched.at == 0) return false;
+    std::vector<std::uint32_t> index;
+    for (const std::uint32_t t : stitched.of) index.push_back(prepared.triangle_index[t]);
+    prepared.triangles = stitched.triangles;
+    prepared.triangle_index = std::move(index);
+    std::string text = "split " + counted(stitched.split, "triangle") + " at " + counted(stitched.at, "T-junction");
+    if (stitched.farthest > 0) text += ", up to " + text_of(stitched.farthest) + " m beside its edge";
+    repairs.push_back(text);
+    return true;
 }
 
 /// Makes the windings of each orientable patch agree with the majority, then turns closed patches as told. Returns
@@ -141,11 +144,10 @@ PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair, Nesting nesting, Chec
     check_mesh(mesh, name);
     check_reach(mesh, name);
     PreparedMesh prepared = weld(mesh);
-    if (repair == Repair::allowed) {
-        drop_triangles(prepared, mesh.vertices);
-        stitch(prepared, mesh.vertices);
-    }
+    if (repair == Repair::allowed) drop_triangles(prepared, mesh.vertices);
     number_vertices(mesh, prepared);
+    std::vector<HalfEdge> edges = sorted_half_edges(prepared.triangles);
+    if (repair == Repair::allowed && stitch(prepared, edges)) edges = sorted_half_edges(prepared.triangles);
 
     Executor executor(threads_for(prepared.triangles.size(), threads));
     const std::vector<Vec3> exact = all_snapped(prepared.vertices);
@@ -156,7 +158,6 @@ PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair, Nesting nesting, Chec
     const auto tree = [&]() -> const MeshTree& {
         return made ? *made : made.emplace(exact, prepared.triangles, with_area, executor);
     };
-    std::vector<HalfEdge> edges = sorted_half_edges(prepared.triangles);
     const Patches patches = find_patches(prepared.triangles, edges);
     if (repair == Repair::allowed) {
         if (mend_windings(prepared, patches, tree, nesting)) edges = sorted_half_edges(prepared.triangles);

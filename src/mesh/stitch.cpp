@@ -158,10 +158,10 @@ bool split(std::vector<Triangle>& pieces, std::size_t& piece, unsigned edge, std
 
 } // namespace
 
-Stitched stitch_borders(std::span<const Triangle> triangles, std::span<const Vec3> vertices) {
+Stitched stitch_borders(std::span<const Triangle> triangles, std::span<const Vec3> vertices,
+                        std::span<const HalfEdge> edges) {
     Stitched result;
     std::vector<std::uint32_t> corners, ends; // of border edges
-    const std::vector<HalfEdge> edges = sorted_half_edges(triangles);
     for_each_edge(edges, [&](std::span<const HalfEdge> sides) {
         if (sides.size() % 2 == 0) return;
         ends.insert(ends.end(), {sides[0].lo, sides[0].hi});

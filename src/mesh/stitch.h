@@ -23,6 +23,8 @@ struct Stitched {
 /// Splits triangles at vertices of borders that lie on their border edges, up to the last digits of the coordinates:
 /// two of the three that they are rounded by, but no more than 1e-4 of the box's diagonal. Corner k of a triangle, and
 /// the edge from there on, is that of its pieces where they have a part of it. Equal vertices must have equal indices.
-Stitched stitch_borders(std::span<const Triangle> triangles, std::span<const Vec3> vertices);
+/// edges: the sorted half edges of the triangles.
+Stitched stitch_borders(std::span<const Triangle> triangles, std::span<const Vec3> vertices,
+                        std::span<const HalfEdge> edges);
 
 } // namespace raycontact
