@@ -8,6 +8,8 @@
 
 #define MOST_CLEAR 1.0e9f // PairBlock.clear
 
+#define MOST_THROWN 0.0501f // of the smaller body's diagonal; a little more than what the host asks of
+
 DEVICE float least_of_vertices(const float* values) {
     if (VERTICES_AT_ONCE == 16) return least_of_sixteen(values);
     float least = values[0];
@@ -53,7 +55,7 @@ DEVICE float placed_within(READS(DirectedPair) pair, READS(ShapeHeader) shapes) 
 // differ by, since poses are rigid only to 1e-4. Directions lie side by side. horizons: where edges are looked for,
 // `ahead` and half their way beyond the margins; more, ahead: null for 0. half_way: of the pairs on their way to
 // `next`; both null: they stay. thrown: of vertices on their way, how far one with little of its own body behind it may
-// be thrown: half the way of the pair; else null.
+// be thrown: half the way of the pair, and no more than a part of the smaller body; else null.
 KERNEL void find_margins(COUNT(count), READS(DirectedPair) pairs, READS(DirectedPair) next, READS(float) more,
                          READS(float) ahead, READS(ShapeHeader) shapes, WRITES(float) margins, WRITES(float) horizons,
                          WRITES(DirectedPair) half_way, WRITES(float) thrown) {
@@ -81,8 +83,10 @@ KERNEL void find_margins(COUNT(count), READS(DirectedPair) pairs, READS(Directed
         const float from_there = go_half_way(there, next + p, shapes, half_way + p);
         horizons[p] += from_there;
         if (!thrown) continue;
-        thrown[p] = from_there;
-        if (shapes[there->source].least_exit < from_there) horizons[p] += from_there;
+        const float one = shapes[there->source].tolerance, two = shapes[there->target].tolerance;
+        const float most = MOST_THROWN * DIAGONAL_TOLERANCES * (one < two ? one : two);
+        thrown[p] = from_there < most ? from_there : most;
+        if (shapes[there->source].least_exit < thrown[p]) horizons[p] += thrown[p];
     }
 }
 

@@ -442,6 +442,7 @@ TEST(Speculative, AThinBodySeesAsFarAsItMayBeThrown) {
         // What the motion passes is told anyway.
         if (lowest_of(next) != lowest) continue;
         double way = 0;
+        const double size = 2 * length(mesh.vertices[0]);
         for (const Vec3& v : mesh.vertices)
             way = std::max(way, length(transform_point(next, v) - transform_point(now, v)));
         for (const Method method : {Method::standard, Method::certified}) {
@@ -458,8 +459,9 @@ TEST(Speculative, AThinBodySeesAsFarAsItMayBeThrown) {
                     return c.feature.source == Side::a && c.feature.source_index() == corner
                            && std::fabs(double(c.depth) + gap) < 1e-6;
                 });
-            EXPECT_TRUE(is_told || !(thin && gap < 0.4 * way)) << i << ' ' << gap << ' ' << way;
-            EXPECT_FALSE(is_told && (!thin || gap > 0.75 * way)) << i << ' ' << gap << ' ' << way;
+            EXPECT_TRUE(is_told || !(thin && gap < std::min(0.4 * way, 0.045 * size))) << i << ' ' << gap << ' ' << way;
+            EXPECT_FALSE(is_told && (!thin || gap > std::min(0.75 * way, 0.051 * size)))
+                << i << ' ' << gap << ' ' << way;
             told += is_told;
             beyond += !is_told;
         }
