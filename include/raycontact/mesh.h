@@ -83,7 +83,8 @@ struct MeshReport {
 enum class Repair {
     allowed, ///< drop degenerate and duplicate triangles, which never opens a closed edge (where a degenerate one joins
              ///< a corner with the side of a triangle on which it lies, that triangle is split at the corner); make
-             ///< windings agree; turn components as Nesting has it; stitch T-junctions (docs/conventions.md, T-junctions)
+             ///< windings agree; turn components as Nesting has it; stitch T-junctions (docs/conventions.md,
+             ///< T-junctions)
     as_is,   ///< change nothing; connectivity is still found by exact position
 };
 

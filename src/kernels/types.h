@@ -128,7 +128,7 @@ STRUCT(ShapeHeader) {
     float clearance_unit;                      // metres a step of the stored lengths
     uint cones_pay;                            // most triangles have normal-cone balls: it pays to test them
     float low[3], high[3];                     // the box
-    float ray_reach; // metres that rays from its vertices may go beyond the bounds of an open mesh
+    float ray_reach;  // metres that rays from its vertices may go beyond the bounds of an open mesh
     float least_exit; // the shortest way of such a ray out of its own mesh, metres
 };
 WIRE_SIZE(ShapeHeader, 304);
