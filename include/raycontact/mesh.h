@@ -82,9 +82,9 @@ struct MeshReport {
 /// Whether prepare_mesh may change anything beyond welding for connectivity.
 enum class Repair {
     allowed, ///< drop degenerate and duplicate triangles, which never opens a closed edge (where a degenerate one joins
-             ///< a corner with the side of a triangle on which it lies, that triangle is split at the corner); make
-             ///< windings agree; turn components as Nesting has it; stitch T-junctions (docs/conventions.md,
-             ///< T-junctions)
+             ///< a corner with the side of a triangle on which it lies, that triangle is split at the corner), and one
+             ///< of two closed surfaces back to back; stitch T-junctions (docs/conventions.md, T-junctions); make
+             ///< windings agree; turn components as Nesting has it
     as_is,   ///< change nothing; connectivity is still found by exact position
 };
 

@@ -8,8 +8,6 @@
 
 #define MOST_CLEAR 1.0e9f // PairBlock.clear
 
-#define MOST_THROWN 0.0501f // of the smaller body's diagonal; a little more than what the host asks of
-
 DEVICE float least_of_vertices(const float* values) {
     if (VERTICES_AT_ONCE == 16) return least_of_sixteen(values);
     float least = values[0];
@@ -84,7 +82,7 @@ KERNEL void find_margins(COUNT(count), READS(DirectedPair) pairs, READS(Directed
         horizons[p] += from_there;
         if (!thrown) continue;
         const float one = shapes[there->source].tolerance, two = shapes[there->target].tolerance;
-        const float most = MOST_THROWN * DIAGONAL_TOLERANCES * (one < two ? one : two);
+        const float most = 1.001f * MOST_THROWN * DIAGONAL_TOLERANCES * (one < two ? one : two);
         thrown[p] = from_there < most ? from_there : most;
         if (shapes[there->source].least_exit < thrown[p]) horizons[p] += thrown[p];
     }
@@ -128,16 +126,18 @@ DEVICE void place_sources(MovingLanes* lanes, uint vertices, READS(DirectedPair)
 DEVICE void move_sources(MovingLanes* lanes, uint vertices, READS(DirectedPair) next, float thrown,
                          READS(VertexBlock) block, uint first) {
     MovingLanes then;
-    float way2[VERTICES_AT_ONCE] = {0}, turn2[VERTICES_AT_ONCE] = {0};
+    float way2[VERTICES_AT_ONCE] = {0}, turn2[VERTICES_AT_ONCE] = {0}, farther[VERTICES_AT_ONCE];
     place_sources(&then, vertices, next, block, first);
+    FOR_LANES(k, VERTICES_AT_ONCE) {
+        farther[k] = block->exit[first + k] < thrown ? thrown : 0.0f;
+    }
     for (int i = 0; i < 3; ++i) {
         FOR_LANES(k, VERTICES_AT_ONCE) {
             const float way = then.middle[i][k] - lanes->middle[i][k];
             const float turn = then.half_edge[i][k] - lanes->half_edge[i][k];
-            const float farther = block->exit[first + k] < thrown ? thrown : 0.0f;
             if (vertices != 0u) lanes->half_edge[i][k] = way;
-            lanes->reach[i][k] = magnitude_of(lanes->half_edge[i][k])
-                                 + (vertices != 0u ? farther : magnitude_of(way) + magnitude_of(turn));
+            lanes->reach[i][k] = (magnitude_of(lanes->half_edge[i][k]) + farther[k])
+                                 + (vertices != 0u ? 0.0f : magnitude_of(way) + magnitude_of(turn));
             way2[k] += way * way;
             turn2[k] += turn * turn;
         }
@@ -145,8 +145,7 @@ DEVICE void move_sources(MovingLanes* lanes, uint vertices, READS(DirectedPair) 
     FOR_LANES(k, VERTICES_AT_ONCE) {
         const float way = 1.0001f * root_of(way2[k]);
         lanes->length[k] = vertices != 0u ? way : lanes->length[k];
-        const float farther = block->exit[first + k] < thrown ? thrown : 0.0f;
-        lanes->away[k] = vertices != 0u ? farther : way + 1.0001f * root_of(turn2[k]);
+        lanes->away[k] = farther[k] + (vertices != 0u ? 0.0f : way + 1.0001f * root_of(turn2[k]));
     }
 }
 

@@ -23,6 +23,9 @@
 #define NONE 0xffffffffu
 #define LEAF 0x80000000u
 #define UNBOUNDED 3.0e38f
+
+// Of the smaller body's diagonal: what is thrown is followed no farther (docs/internals/speculative.md, Thin bodies).
+#define MOST_THROWN 0.05f
 // A word of a clearance grid: a ball that contains no surface. Bits 0 to 14: the cell of its middle, relative to the
 // word's cell, plus CLEARANCE_OFFSET. Bit 15: it is outside. The rest: its radius in steps, CLEARANCE_STEPS a cell.
 #define CLEARANCE_OFFSET 16

@@ -9,7 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <ranges>
+#include <numeric>
 #include <tuple>
 #include <unordered_map>
 #include <utility>
@@ -68,8 +68,9 @@ private:
         std::vector<Triangle> wound(triangles_);
         for (Triangle& t : wound) t = sorted(t);
         std::vector<std::uint32_t> lowest = lowest_equal(wound);
-        if (std::ranges::any_of(std::views::iota(std::size_t{0}, lowest.size()),
-                                [&](std::size_t t) { return lowest[t] != t; })) {
+        std::vector<std::uint32_t> own(lowest.size());
+        std::iota(own.begin(), own.end(), 0u);
+        if (lowest != own) {
             drop_backs(lowest);
             for (std::size_t t = 0; t < wound.size(); ++t) wound[t] = turned(triangles_[t]);
             lowest = lowest_equal(wound);
@@ -88,7 +89,8 @@ private:
         }
         if (copies.empty()) return;
         // Where the surface is open, doubling does not close it: there copies go at once.
-        const std::vector<char> open = open_parts();
+        std::vector<char> open(triangles_.size(), 0);
+        spread(open, 2);
         for (const std::uint32_t t : copies) {
             if (open[t])
                 drop(t);
@@ -112,39 +114,31 @@ private:
             back[t] = first;
             back[first] = t;
         }
-        DisjointSets parts;
-        parts.reset(triangles_.size());
-        std::vector<std::uint32_t> apart; // edges that stay open
-        const std::vector<HalfEdge> edges = sorted_half_edges(triangles_);
-        for_each_edge(edges, [&](std::span<const HalfEdge> sides) {
-            for (const HalfEdge& side : sides) parts.join(side.triangle(), sides[0].triangle());
-            if (sides.size() % 4 != 0) apart.push_back(sides[0].triangle());
-        });
-        for (const std::uint32_t t : apart) stays[t] = 1;
-        std::vector<char> part_stays(triangles_.size(), 0);
         for (std::uint32_t t = 0; t < triangles_.size(); ++t)
-            if (stays[t] || back[t] == none || has_repeated(triangles_[t])) part_stays[parts.of(t)] = 1;
+            if (back[t] == none || has_repeated(triangles_[t])) stays[t] = 1;
+        spread(stays, 4);
         for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
-            if (part_stays[parts.of(t)] || back[t] > t) continue;
+            if (stays[t] || back[t] > t) continue;
             result_.triangles[t] = 1;
             ++result_.back_to_back;
         }
     }
 
-    /// Whether each triangle is of a part, connected over edges, that has an edge with an odd number of triangles.
-    std::vector<char> open_parts() const {
+    /// Marks the whole of each part, connected over edges, that has a triangle that is marked, or an edge whose number
+    /// of triangles is no multiple of one.
+    void spread(std::vector<char>& marks, std::size_t multiple) const {
         DisjointSets parts;
         parts.reset(triangles_.size());
-        std::vector<std::uint32_t> odd;
+        std::vector<std::uint32_t> others;
         const std::vector<HalfEdge> edges = sorted_half_edges(triangles_);
         for_each_edge(edges, [&](std::span<const HalfEdge> sides) {
             for (const HalfEdge& side : sides) parts.join(side.triangle(), sides[0].triangle());
-            if (sides.size() % 2 != 0) odd.push_back(sides[0].triangle());
+            if (sides.size() % multiple != 0) others.push_back(sides[0].triangle());
         });
-        std::vector<char> open(triangles_.size(), 0);
-        for (const std::uint32_t t : odd) open[parts.of(t)] = 1;
-        for (std::uint32_t t = 0; t < triangles_.size(); ++t) open[t] = open[parts.of(t)];
-        return open;
+        for (const std::uint32_t t : others) marks[parts.of(t)] = 1;
+        for (std::uint32_t t = 0; t < triangles_.size(); ++t)
+            if (marks[t]) marks[parts.of(t)] = 1;
+        for (std::uint32_t t = 0; t < triangles_.size(); ++t) marks[t] = marks[parts.of(t)];
     }
 
     /// Two candidates with the same vertices: no edge turns odd without them. Of degenerate ones the winding means

@@ -35,8 +35,14 @@ Box MeshTree::box_of(const kernels::TriangleBlock& block) const {
     return box;
 }
 
-bool MeshTree::meets(const Box& box, const Vec3& origin, const Vec3& direction) {
-    double enter = 0, leave = 1e300;
+Vec3 MeshTree::without_zeros(Vec3 direction) {
+    for (double* x : {&direction.x, &direction.y, &direction.z})
+        if (*x == 0) *x = 1e-300;
+    return direction;
+}
+
+bool MeshTree::meets(const Box& box, const Vec3& origin, const Vec3& direction, double longest) {
+    double enter = 0, leave = longest;
     for (std::size_t k = 0; k < 3; ++k) {
         const double o = axis(origin, k), inverse = 1 / axis(direction, k);
         const double t1 = (axis(box.low, k) - o) * inverse, t2 = (axis(box.high, k) - o) * inverse;

@@ -38,8 +38,30 @@ public:
             });
     }
 
+    /// Calls visit(i) for every triangle whose box comes within a distance of a segment, metres. Returns how many
+    /// blocks it looked at.
+    template <class Visit>
+    std::size_t near_segment(const Vec3& from, const Vec3& to, double within, Visit&& visit) const {
+        const Vec3 around{within, within, within}, way = without_zeros(to - from);
+        const auto is_near = [&](const Box& box, const Vec3& origin) {
+            return meets({box.low - around, box.high + around}, origin, way, 1);
+        };
+        std::size_t blocks = 0;
+        visit_blocks(
+            tree_, [&](const Box& box) { return is_near(box, from - middle_); },
+            [&](const kernels::TriangleBlock& block) {
+                ++blocks;
+                for (const std::uint32_t t : block.triangle)
+                    if (t != NONE && is_near(boxes_[t], from)) visit(t);
+                return true;
+            });
+        return blocks;
+    }
+
 private:
-    static bool meets(const Box& box, const Vec3& origin, const Vec3& direction);
+    static Vec3 without_zeros(Vec3 direction);
+    /// longest: how many times the direction goes.
+    static bool meets(const Box& box, const Vec3& origin, const Vec3& direction, double longest = 1e300);
     Box box_of(const kernels::TriangleBlock& block) const;
 
     /// A triangle of the block, and one of it or of a later block.

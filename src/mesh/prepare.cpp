@@ -90,8 +90,8 @@ void number_vertices(const Mesh& mesh, PreparedMesh& prepared) {
 
 /// Splits triangles at the T-junctions of borders, and reports how many; whether any. The pieces of a triangle have its
 /// index.
-bool stitch(PreparedMesh& prepared, std::span<const HalfEdge> edges) {
-    const Stitched stitched = stitch_borders(prepared.triangles, prepared.vertices, edges);
+bool stitch(PreparedMesh& prepared, std::span<const HalfEdge> edges, Executor& executor) {
+    const Stitched stitched = stitch_borders(prepared.triangles, prepared.vertices, edges, executor);
     std::vector<std::string>& repairs = prepared.report.repairs;
     if (stitched.given_up)
         repairs.push_back("left T-junctions as they are: too many vertices lie on borders of others");
@@ -146,10 +146,10 @@ PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair, Nesting nesting, Chec
     PreparedMesh prepared = weld(mesh);
     if (repair == Repair::allowed) drop_triangles(prepared, mesh.vertices);
     number_vertices(mesh, prepared);
-    std::vector<HalfEdge> edges = sorted_half_edges(prepared.triangles);
-    if (repair == Repair::allowed && stitch(prepared, edges)) edges = sorted_half_edges(prepared.triangles);
-
     Executor executor(threads_for(prepared.triangles.size(), threads));
+    std::vector<HalfEdge> edges = sorted_half_edges(prepared.triangles);
+    if (repair == Repair::allowed && stitch(prepared, edges, executor)) edges = sorted_half_edges(prepared.triangles);
+
     const std::vector<Vec3> exact = all_snapped(prepared.vertices);
     const std::vector<std::uint32_t> with_area = triangles_with_area(prepared.triangles, exact);
     if (with_area.empty()) throw InputError(name + ": no triangle has an area");

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesh/stitch.h"
 
-#include "interruption.h"
+#include "mesh/input_file.h"
+#include "mesh/mesh_tree.h"
 #include "mesh/vector.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -15,120 +17,22 @@ namespace raycontact {
 namespace {
 
 /// The unit in which the coordinates are rounded: of a decimal fraction, as text has them, of a float, or of a double.
-double last_digit(std::span<const Triangle> triangles, std::span<const Vec3> vertices) {
+double last_digit(std::span<const Vec3> vertices) {
     constexpr double rounding = std::numeric_limits<double>::epsilon();
-    double largest = 0;
-    bool floats = true;
-    const auto each = [&](auto&& visit) {
-        for (const Triangle& t : triangles)
-            for (const std::uint32_t v : t)
-                for (const double x : {vertices[v].x, vertices[v].y, vertices[v].z})
-                    if (!visit(x)) return false;
-        return true;
+    const auto all = [&](auto&& holds) {
+        return std::ranges::all_of(vertices, [&](const Vec3& v) { return holds(v.x) && holds(v.y) && holds(v.z); });
     };
-    each([&](double x) {
-        largest = std::max(largest, std::fabs(x));
-        floats = floats && x == double(static_cast<float>(x));
-        return true;
-    });
-    for (double digit = 1, per = 1; digit > 64 * rounding * largest; digit /= 10, per *= 10)
-        if (each([&](double x) {
-                const double whole = std::round(x * per);
-                return std::fabs(x * per - whole) <= 4 * rounding * std::fabs(x * per);
+    double largest = 0;
+    for (const Vec3& v : vertices) largest = std::max({largest, std::fabs(v.x), std::fabs(v.y), std::fabs(v.z)});
+    for (double per = 1; per * 64 * rounding * largest < 1; per *= 10)
+        if (all([&](double x) {
+                return std::fabs(x * per - std::round(x * per)) <= 4 * rounding * std::fabs(x * per);
             }))
             return 1 / per;
-    return (floats ? 0.5 * double(std::numeric_limits<float>::epsilon()) : 8 * rounding) * largest;
+    if (all([](double x) { return x == double(static_cast<float>(x)); }))
+        return 0.5 * double(std::numeric_limits<float>::epsilon()) * largest;
+    return 8 * rounding * largest;
 }
-
-/// Vertices, found by where they are.
-class Points {
-public:
-    Points(std::span<const Vec3> places, std::vector<std::uint32_t> vertices)
-        : places_(places), order_(std::move(vertices)), halves_(order_.size()) {
-        divide(0, order_.size());
-    }
-
-    /// Calls visit(vertex, place along the segment from 0 to 1, squared distance) for those within a distance.
-    template <class Visit>
-    void near_segment(const Vec3& from, const Vec3& to, double within, Visit&& visit) {
-        Question<Visit> question{from, to - from, within, visit};
-        ask(question, 0, order_.size(), 0, 1);
-    }
-    std::size_t visited() const { return visited_; }
-
-private:
-    static constexpr std::size_t few = 8;
-    template <class Visit>
-    struct Question {
-        Vec3 from, way;
-        double within;
-        Visit& visit;
-    };
-    /// The first half lies below the split, the second above.
-    struct Half {
-        double split = 0;
-        unsigned axis = 0;
-    };
-    static double along(const Vec3& p, unsigned axis) { return axis == 0 ? p.x : axis == 1 ? p.y : p.z; }
-
-    void divide(std::size_t begin, std::size_t end) {
-        if (end - begin <= few) return;
-        Vec3 low = places_[order_[begin]], high = low;
-        for (std::size_t i = begin; i < end; ++i) {
-            low = least(low, places_[order_[i]]);
-            high = most(high, places_[order_[i]]);
-        }
-        const Vec3 size = high - low;
-        const unsigned axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
-        const std::size_t middle = begin + (end - begin) / 2;
-        const auto at = [&](std::size_t i) { return order_.begin() + static_cast<std::ptrdiff_t>(i); };
-        std::nth_element(at(begin), at(middle), at(end), [&](std::uint32_t i, std::uint32_t k) {
-            return std::pair(along(places_[i], axis), i) < std::pair(along(places_[k], axis), k);
-        });
-        halves_[middle] = {along(places_[order_[middle]], axis), axis};
-        divide(begin, middle);
-        divide(middle, end);
-    }
-
-    // Of the segment the part from first to last.
-    template <class Visit>
-    void ask(Question<Visit>& question, std::size_t begin, std::size_t end, double first, double last) {
-        ++visited_;
-        if (end - begin <= few) {
-            for (std::size_t i = begin; i < end; ++i) {
-                const Vec3 off = places_[order_[i]] - question.from;
-                const double place = dot(off, question.way) / dot(question.way, question.way);
-                const Vec3 aside = off - place * question.way;
-                if (dot(aside, aside) <= question.within * question.within)
-                    question.visit(order_[i], place, dot(aside, aside));
-            }
-            return;
-        }
-        const std::size_t middle = begin + (end - begin) / 2;
-        const auto [split, axis] = halves_[middle];
-        const double start = along(question.from, axis), step = along(question.way, axis);
-        // Where it is below the upper bound of the first half, and above the lower one of the second.
-        for (const bool upper : {false, true}) {
-            const double bound = upper ? split - question.within : split + question.within;
-            double from = first, to = last;
-            if (step != 0) {
-                const double meets = (bound - start) / step;
-                if ((step > 0) == upper)
-                    from = std::max(from, meets);
-                else
-                    to = std::min(to, meets);
-            } else if (upper ? start < bound : start > bound) {
-                continue;
-            }
-            if (from <= to) ask(question, upper ? middle : begin, upper ? end : middle, from, to);
-        }
-    }
-
-    std::span<const Vec3> places_;
-    std::vector<std::uint32_t> order_;
-    std::vector<Half> halves_; ///< by place in the order, of a middle
-    std::size_t visited_ = 0;
-};
 
 /// A vertex on an edge.
 struct Junction {
@@ -159,7 +63,7 @@ bool split(std::vector<Triangle>& pieces, std::size_t& piece, unsigned edge, std
 } // namespace
 
 Stitched stitch_borders(std::span<const Triangle> triangles, std::span<const Vec3> vertices,
-                        std::span<const HalfEdge> edges) {
+                        std::span<const HalfEdge> edges, Executor& executor) {
     Stitched result;
     std::vector<std::uint32_t> corners, ends; // of border edges
     for_each_edge(edges, [&](std::span<const HalfEdge> sides) {
@@ -170,27 +74,28 @@ Stitched stitch_borders(std::span<const Triangle> triangles, std::span<const Vec
     if (corners.empty()) return result;
     std::ranges::sort(ends);
     ends.erase(std::ranges::unique(ends).begin(), ends.end());
-    Vec3 low = vertices[ends[0]], high = low;
-    for (const std::uint32_t v : ends) {
-        low = least(low, vertices[v]);
-        high = most(high, vertices[v]);
-    }
-    const double within = std::min(2 * last_digit(triangles, vertices), 1e-4 * length(high - low));
-    const std::size_t most_visits = 256 * (ends.size() + corners.size()) + 100'000;
-    const std::size_t most_junctions = 4 * ends.size();
-    Points points(vertices, std::move(ends));
+    std::vector<Triangle> points; // as triangles, for the tree
+    for (const std::uint32_t v : ends) points.push_back({v, v, v});
+    std::vector<std::uint32_t> all(points.size());
+    std::iota(all.begin(), all.end(), 0u);
+    const MeshTree tree(vertices, points, all, executor);
+    const Box box = box_of(vertices);
+    const double within = std::min(2 * last_digit(vertices), 1e-4 * length(box.high - box.low));
+    const std::size_t most_blocks = 64 * (ends.size() + corners.size()) + 100'000;
+    const std::size_t most_junctions = std::min(4 * ends.size(), most_triangles - triangles.size());
+    std::size_t blocks = 0;
     std::vector<Junction> junctions;
-    const InterruptionCheck check;
     for (const std::uint32_t corner : corners) {
-        check();
         const Triangle& t = triangles[corner / 3];
-        const std::uint32_t a = t[corner % 3], b = t[(corner + 1) % 3];
-        const double size = length(vertices[b] - vertices[a]);
-        points.near_segment(vertices[a], vertices[b], within, [&](std::uint32_t v, double place, double away2) {
-            if (place * size > within && (1 - place) * size > within)
-                junctions.push_back({corner, place, v, std::sqrt(away2)});
+        const Vec3 &a = vertices[t[corner % 3]], &b = vertices[t[(corner + 1) % 3]], way = b - a;
+        const double size = length(way);
+        blocks += tree.near_segment(a, b, within, [&](std::uint32_t point) {
+            const Vec3 off = vertices[ends[point]] - a;
+            const double place = dot(off, way) / dot(way, way), away = length(off - place * way);
+            if (away <= within && place * size > within && (1 - place) * size > within)
+                junctions.push_back({corner, place, ends[point], away});
         });
-        result.given_up = points.visited() > most_visits || junctions.size() > most_junctions;
+        result.given_up = blocks > most_blocks || junctions.size() > most_junctions;
         if (result.given_up) return result;
     }
     if (junctions.empty()) return result;

@@ -3,6 +3,7 @@
 
 #include <raycontact/pose.h>
 
+#include "executor/executor.h"
 #include "mesh/adjacency.h"
 
 #include <cstddef>
@@ -20,11 +21,11 @@ struct Stitched {
     bool given_up = false;           ///< some were not sought: too many lie near too many edges
 };
 
-/// Splits triangles at vertices of borders that lie on their border edges, up to the last digits of the coordinates:
-/// two of the three that they are rounded by, but no more than 1e-4 of the box's diagonal. Corner k of a triangle, and
-/// the edge from there on, is that of its pieces where they have a part of it. Equal vertices must have equal indices.
+/// Splits triangles at vertices of borders that lie on their border edges: no farther off than twice the last digit of
+/// the coordinates, and 1e-4 of the box's diagonal. Corner k of a piece, and the edge from there on, is that of the
+/// triangle where the piece has it or a part of it. Every vertex must be in use, and equal ones have equal indices.
 /// edges: the sorted half edges of the triangles.
 Stitched stitch_borders(std::span<const Triangle> triangles, std::span<const Vec3> vertices,
-                        std::span<const HalfEdge> edges);
+                        std::span<const HalfEdge> edges, Executor& executor);
 
 } // namespace raycontact

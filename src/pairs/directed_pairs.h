@@ -54,6 +54,9 @@ double smaller_size(const PlacedBody& a, const PlacedBody& b);
 
 /// How near two bodies have speculative contacts that do not hurry, metres.
 double speculative_margin(const Settings& settings, const PlacedBody& a, const PlacedBody& b);
+/// What stops a body at one end throws its other end, beyond where it goes, by up to this part of the pair's way: as
+/// much as of a rod that falls flat (docs/internals/speculative.md, Thin bodies).
+inline constexpr double thrown_share = 0.5;
 
 /// One direction of a pair. Its directed index in a list of pairs is 2 x place of the pair, + 0 for vertices of a
 /// against b, + 1 for vertices of b against a (docs/internals/pipeline.md).

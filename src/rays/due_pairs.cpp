@@ -143,7 +143,7 @@ void DuePairs::check_slice(const Update& update, CertifiedPairs& table, std::uin
     };
     // How much farther than the margin some vertices are asked: half the way, where a body is thinner than that.
     const auto thrown_of = [](const Slack& slack, double way) {
-        const double thrown = 0.501 * way;
+        const double thrown = thrown_share * way;
         return double(slack.least_exit) < thrown ? thrown : 0;
     };
     const auto wants = [&](std::uint32_t i, Slack& slack) {

@@ -45,8 +45,7 @@ Approaches::Approaches(const SpeculativePair& pair, Side side, std::uint32_t ver
                           transform_point(body_.next, body_.source.point(vertex))},
       from_(way_[0]), to_(way_[1]), margin_(pair.margin), reach_(pair.margin), perturbation_(pair.perturbation) {
     // Deeper in than its own body is thick its ray tells nothing.
-    if (body_.moves && double(body_.source.exit_distances[vertex]) < body_.thrown)
-        reach_ = std::max(margin_, body_.thrown);
+    if (double(body_.source.exit_distances[vertex]) < body_.thrown) reach_ = std::max(margin_, body_.thrown);
 }
 
 void Approaches::leave(const Vec3& normal, double depth) {

@@ -43,11 +43,12 @@ void of_edges(Contact& contact, const SpeculativePair& pair) {
     // Of a triangle that was split at T-junctions the piece whose edge is nearest: all have its number.
     const auto edge = [&](const PlacedBody& body, std::uint32_t index) {
         const ShapeData& shape = body.shape->data();
-        std::uint32_t nearest = NONE;
-        double least = std::numeric_limits<double>::infinity();
         const std::span<const std::uint32_t> numbers = shape.mesh.triangle_index;
         const Vec3 at = rotated_back(body.centred.rotation, contact.point_a - body.centred.translation);
-        for (std::uint32_t t = number_of(numbers, index / 3); t < numbers.size() && numbers[t] == index / 3; ++t) {
+        std::uint32_t nearest = NONE;
+        double least = std::numeric_limits<double>::infinity();
+        for (const std::uint32_t& piece : std::ranges::equal_range(numbers, index / 3)) {
+            const auto t = static_cast<std::uint32_t>(&piece - numbers.data());
             const Vec3 from = shape.corner(t, index % 3), to = shape.corner(t, (index + 1) % 3);
             const double away = length(at - nearest_of(at, from, to, to).point);
             if (away < least) nearest = 3 * t + index % 3;

@@ -24,7 +24,7 @@ struct OneWay {
     const ShapeData &source, &target;
     Pose now, next;
     bool moves;    ///< a point may go farther than the margin until the next step
-    double thrown; ///< how far what stops the body elsewhere may turn a point from its way, metres
+    double thrown; ///< how far from its way what stops the body elsewhere may throw a point, metres; 0: it stays
 };
 
 /// A pair whose speculative contacts are asked for (docs/internals/speculative.md): what is nearer than a margin, and

@@ -272,7 +272,6 @@ TEST(Rest, UnsupportedPairIsCounted) {
 // where one end is hit the other is thrown down by more than the sheet is thick.
 TEST(Rest, ThinPlatesLieOnTop) {
     constexpr double slop = 0.0003; // metres, as recommended
-    int plates = 0;
     for (const bool as_mesh : {true, false})
         for (const double thick : {0.001, 0.002, 0.003, 0.005})
             for (const double tilt : {0.0, 0.1, 0.3, 0.6, 1.0, 1.3, 1.5, 1.57})
@@ -292,9 +291,7 @@ TEST(Rest, ThinPlatesLieOnTop) {
                     const bool lies = std::fabs(height - (right - slop)) <= slop && (up > 0.999 || up < 0.02)
                                       && double(plate.getLinearVelocity().length()) < 0.005;
                     EXPECT_TRUE(lies) << thick << ' ' << tilt << ' ' << hertz << ' ' << as_mesh;
-                    ++plates;
                 }
-    EXPECT_EQ(plates, 192);
 }
 
 /// A profile with two legs, its centre of mass about the origin.

@@ -421,8 +421,7 @@ TEST(Speculative, ABodyMayHaveAMarginOfItsOwn) {
 // comes down by up to half the plate's way. Of a block as large, that is thicker than that, no such place is told.
 TEST(Speculative, AThinBodySeesAsFarAsItMayBeThrown) {
     Random random(65);
-    const Mesh slab_mesh = box_mesh({2, 2, 0.25});
-    const auto slab = Shape::make(slab_mesh);
+    const auto slab = Shape::make(box_mesh({2, 2, 0.25}));
     std::size_t told = 0, beyond = 0;
     for (int i = 0; i < 400; ++i) {
         const bool thin = i % 4 != 0;

@@ -170,24 +170,24 @@ bool ContactFinder::is_on_side(Candidate& c, const Entry& entry) const {
     const bool mesh_is_0 = pair.mesh_is_0(), of_mesh = (c.key.vertex_body == 0) == mesh_is_0;
     const btVector3 away = mesh_is_0 ? -c.normal : c.normal;
     if (!(away.dot(pair.other().pose(centre_of(pair.other())) - (mesh_is_0 ? c.on0 : c.on1)) > 0)) return false;
-    const auto local = [](std::span<const std::uint32_t> numbers, int number) { // ascending
-        return static_cast<std::size_t>(std::ranges::lower_bound(numbers, static_cast<std::uint32_t>(number))
-                                        - numbers.begin());
-    };
     const Shape& shape = *pair.mesh().converted.shape;
     const BulletMesh::FreeBorder& border = pair.mesh().converted.in_bullet->free_border();
     if (c.key.feature != FeatureKind::edges)
-        return !of_mesh || !border.vertices[local(shape.vertex_index(), c.key.vertex)];
+        return !of_mesh
+               || !border.vertices[static_cast<std::size_t>(
+                   std::ranges::lower_bound(shape.vertex_index(), static_cast<std::uint32_t>(c.key.vertex))
+                   - shape.vertex_index().begin())];
     int& edge = of_mesh ? c.key.vertex : c.key.other;
     // Of corners 0, 1, 2 the back has 0, 2, 1.
     if (entry.sides == Sides::back) edge += 2 - 2 * (edge % 3);
     c.triangle = c.key.other;
     // The pieces of a triangle that was split at a T-junction have its number.
-    const auto file = static_cast<std::uint32_t>(edge / 3);
-    for (std::size_t t = local(shape.triangle_index(), edge / 3);
-         t < shape.triangle_index().size() && shape.triangle_index()[t] == file; ++t)
-        if (border.edges[3 * t + static_cast<std::size_t>(edge % 3)]) return false;
-    return true;
+    const std::span<const std::uint32_t> numbers = shape.triangle_index();
+    return std::ranges::none_of(std::ranges::equal_range(numbers, static_cast<std::uint32_t>(edge / 3)),
+                                [&](const std::uint32_t& piece) {
+                                    const auto t = static_cast<std::size_t>(&piece - numbers.data());
+                                    return border.edges[3 * t + static_cast<std::size_t>(edge % 3)];
+                                });
 }
 
 // A feature of the mesh leaves the convex shape on one side, by less. A vertex of the shape may lie between a front and

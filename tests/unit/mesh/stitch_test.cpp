@@ -3,6 +3,7 @@
 #include "tests/time_limit.h"
 #include "tests/unit/mesh/solids.h"
 
+#include <raycontact/collide.h>
 #include <raycontact/mesh.h>
 #include <raycontact/query.h>
 #include <raycontact/shape.h>
@@ -12,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <set>
 
 using namespace raycontact;
 using namespace raycontact::test;
@@ -44,10 +46,8 @@ std::size_t cut_at_random(Mesh& mesh, std::mt19937& random, double digit) {
     for (std::size_t t = 0, count = mesh.triangles.size(); t < count; ++t) {
         if (random() % 3 != 0) continue;
         const auto [a, b, c] = mesh.triangles[t];
-        const Vec3 p = mesh.vertices[a], q = mesh.vertices[b];
-        const double at = part();
-        mesh.vertices.push_back(
-            {in_digits(p.x + at * (q.x - p.x)), in_digits(p.y + at * (q.y - p.y)), in_digits(p.z + at * (q.z - p.z))});
+        const Vec3 m_at = between(mesh.vertices[a], mesh.vertices[b], part());
+        mesh.vertices.push_back({in_digits(m_at.x), in_digits(m_at.y), in_digits(m_at.z)});
         const auto m = static_cast<std::uint32_t>(mesh.vertices.size() - 1);
         mesh.triangles[t] = {a, m, c};
         mesh.triangles.push_back({m, b, c});
@@ -84,6 +84,29 @@ TEST(Stitch, PiecesKeepTheirTrianglesCorners) {
             EXPECT_TRUE(!is_whole || corner == whole[k]) << t << ' ' << k;
         }
     }
+}
+
+TEST(Stitch, QueriesAndContactsNameTheTrianglesOfTheFile) {
+    const Mesh file = box_with_cut_top();
+    const auto shape = Shape::make(file), small = Shape::make(box(0.1));
+    // The side at y = 0 is two triangles of the file and three of the shape.
+    std::set<std::uint32_t> hit;
+    for (const double x : {0.1, 0.3, 0.6, 0.98}) {
+        const auto found = raycast(*shape, {}, {x, -1, 0.95}, {0, 1, 0});
+        ASSERT_TRUE(found);
+        hit.insert(found->triangle);
+    }
+    EXPECT_EQ(hit, (std::set<std::uint32_t>{4, 5}));
+    std::size_t contacts = 0;
+    for (const double x : {0.1, 0.45, 0.8})
+        for (const Contact& c : collide(*shape, {}, *small, {.translation = {x, -0.08, 0.85}})) {
+            const bool is_vertex = c.feature.kind == FeatureKind::vertex && c.feature.source == Side::b;
+            EXPECT_TRUE(!is_vertex || c.feature.other_index() < 18u);
+            EXPECT_TRUE(c.feature.kind != FeatureKind::edges || c.feature.index_a < 3 * 18u);
+            EXPECT_LE(c.depth, 0.06F);
+            ++contacts;
+        }
+    EXPECT_GE(contacts, 12u);
 }
 
 TEST(Stitch, NothingIsSplitAsItIs) {
