@@ -257,19 +257,6 @@ Result search(const Options& options) {
     return result;
 }
 
-/// A file to write, if it is named; no other one, and none that is read.
-std::optional<output::OutFile> claim(const Options& options, const char* option, const std::string& name,
-                                     const char* ending) {
-    if (name.empty()) return std::nullopt;
-    if (!name.ends_with(ending))
-        throw InputError(fmt::format("{} {}: give a name that ends in {}", option, name, ending));
-    std::error_code none;
-    for (const std::string& file : options.files)
-        if (std::filesystem::equivalent(file, name, none))
-            throw InputError(fmt::format("{} {}: is one of the files to read; give another name", option, name));
-    return output::OutFile(name);
-}
-
 void write(std::optional<output::OutFile>& file, const std::string& bytes) {
     file->write(bytes);
     file->keep(stop_signal() != 0);
@@ -278,9 +265,9 @@ void write(std::optional<output::OutFile>& file, const std::string& bytes) {
 void run_clash(const Options& options) {
     if (!options.bcf.empty() && options.unit.empty())
         throw InputError("--bcf: has metres, and nothing says which unit the files have; give --unit m, mm, cm or in");
-    auto out = claim(options, "--out", options.out, ".glb");
-    auto csv = claim(options, "--csv", options.csv, ".csv");
-    auto bcf = claim(options, "--bcf", options.bcf, ".bcfzip");
+    auto out = claim(options.files, "--out", options.out, ".glb");
+    auto csv = claim(options.files, "--csv", options.csv, ".csv");
+    auto bcf = claim(options.files, "--bcf", options.bcf, ".bcfzip");
     const Result result = search(options);
     const Unit& unit = options.length_unit();
     if (options.json) {

@@ -63,7 +63,8 @@ private:
                 }
             }
             if (weld_) mesh = weld_mesh(std::move(mesh), *weld_);
-            return Shape::make(prepare_mesh(mesh, Repair::allowed, nesting_, Check::topology, threads_), threads_);
+            return Shape::make(prepare_mesh(mesh, {.nesting = nesting_, .check = Check::topology, .threads = threads_}),
+                               threads_);
         } catch (const InputError& error) {
             throw InputError(body.where.empty() ? error.what() : body.where + ": " + error.what());
         }

@@ -2,7 +2,9 @@
 #include "cli/commands.h"
 
 #include "cli/cavities_option.h"
+#include "cli/out_option.h"
 #include "cli/program.h"
+#include "cli/stop.h"
 #include "cli/weld_option.h"
 
 #include <raycontact/error.h>
@@ -12,6 +14,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -28,6 +31,8 @@ struct MeshOptions {
     bool json = false;
     bool as_is = false;
     bool strict = false;
+    bool close = false;
+    std::string write; ///< a file, or nothing
     std::optional<Nesting> nested;
     std::optional<double> weld; ///< metres
 };
@@ -60,10 +65,20 @@ std::string without_name(const std::string& error, const std::string& name) {
     return error.starts_with(name + ": ") ? error.substr(name.size() + 2) : error;
 }
 
+/// Vertices and triangles, in the order of PreparedMesh; coordinates read back to the same bits.
+std::string obj_of(const PreparedMesh& mesh) {
+    std::string text;
+    for (const auto& [x, y, z] : mesh.vertices) text += fmt::format("v {} {} {}\n", x, y, z);
+    for (const auto& [a, b, c] : mesh.triangles) text += fmt::format("f {} {} {}\n", a + 1, b + 1, c + 1);
+    return text;
+}
+
 /// All files are looked at, whatever is wrong with one. What is wrong is said one line each, the last of them by the
 /// error that is thrown.
 void check_meshes(const MeshOptions& options) {
     const bool several = options.files.size() > 1;
+    if (several && !options.write.empty()) throw InputError("--write: give one mesh file, not several");
+    std::optional<output::OutFile> out = claim(options.files, "--write", options.write, ".obj");
     std::string verdicts;
     std::vector<std::string> complaints;
     std::size_t bad = 0;
@@ -76,8 +91,14 @@ void check_meshes(const MeshOptions& options) {
         try {
             Mesh mesh = load_mesh(file);
             if (options.weld) mesh = weld_mesh(std::move(mesh), *options.weld);
-            const PreparedMesh prepared = prepare_mesh(mesh, options.as_is ? Repair::as_is : Repair::allowed,
-                                                       options.nested.value_or(Nesting::as_wound));
+            const PreparedMesh prepared =
+                prepare_mesh(mesh, {.repair = options.as_is ? Repair::as_is : Repair::allowed,
+                                    .nesting = options.nested.value_or(Nesting::as_wound),
+                                    .holes = options.close ? Holes::of_all : Holes::of_solids});
+            if (out) {
+                out->write(obj_of(prepared));
+                out->keep(stop_signal() != 0);
+            }
             const MeshReport& report = prepared.report;
             Verdict verdict = verdict_of(report);
             const std::optional<double> closing = closing_weld(prepared);
@@ -123,6 +144,14 @@ void add_mesh(CLI::App& app) {
         command->add_flag("--as-is", options->as_is, "report the mesh as the file gives it, repair nothing");
     add_cavities_option(*command, options->nested)->excludes(as_is);
     add_weld_option(*command, options->weld)->excludes(as_is);
+    command
+        ->add_flag("--close", options->close,
+                   "span holes of sheets, too, that are flat or smaller than a tenth of the diagonal; those of solids "
+                   "are always spanned")
+        ->excludes(as_is);
+    add_out(*command, "--write", options->write,
+            "write the mesh as its repairs leave it there; triangles that span holes come last")
+        ->type_name("FILE.obj");
     command->add_flag("--strict", options->strict, "exit status 2 if a mesh is not good for contacts");
     command->callback([options] { check_meshes(*options); });
 }

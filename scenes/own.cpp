@@ -33,7 +33,7 @@ SceneDescription own(const OwnOptions& options) {
     std::shared_ptr<const Shape> ground;
     Vec3 middle; // of the grid
     if (options.ground) {
-        ground = Shape::make(prepare_mesh(load(*options.ground), Repair::allowed, options.nesting));
+        ground = Shape::make(prepare_mesh(load(*options.ground), {.nesting = options.nesting}));
         const Vec3 low = ground->box_min(), high = ground->box_max();
         middle = {(low.x + high.x) / 2, (low.y + high.y) / 2, 0};
         grid.bottom += high.z;

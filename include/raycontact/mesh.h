@@ -66,6 +66,8 @@ struct MeshReport {
     std::uint64_t file_triangles = 0; ///< as in the file, polygons split
     bool closed = false; ///< every edge has a triangle on both sides (each edge met an even number of times, >= 2)
     std::uint64_t border_edges = 0;   ///< edges met an odd number of times; 0: closed
+    std::uint64_t holes = 0;          ///< spanned ones, as Holes has it
+    std::uint64_t spanning = 0;       ///< triangles that span them: not in the file, numbered after its own
     bool manifold = false;            ///< no edge has more than two triangles, no vertex more than one fan
     bool oriented = false;            ///< across every shared edge the two triangles wind the same way
     bool checked = true;              ///< false after Check::topology: self_intersecting and outward are not known
@@ -84,7 +86,7 @@ enum class Repair {
     allowed, ///< drop degenerate and duplicate triangles, which never opens a closed edge (where a degenerate one joins
              ///< a corner with the side of a triangle on which it lies, that triangle is split at the corner), and one
              ///< of two closed surfaces back to back; stitch T-junctions (docs/conventions.md, T-junctions); make
-             ///< windings agree; turn components as Nesting has it
+             ///< windings agree; turn components as Nesting has it; span holes as Holes has it
     as_is,   ///< change nothing; connectivity is still found by exact position
 };
 
@@ -94,6 +96,18 @@ enum class Nesting {
               ///< (the winding number is 2 there, and the volumes add up), or a cavity
     cavities, ///< by turns: outward, in there a cavity, in there outward, ... The winding number is 0 or 1 everywhere
     solids,   ///< all outward, each a solid of its own: undoes cavities
+};
+
+/// Which holes prepare_mesh() spans with triangles of its own, where it may repair. A hole is a closed line of border
+/// edges. It is spanned by triangles over its corners, of the least area where it is not flat (Barequet and Sharir
+/// 1995); they close the mesh, and repairs name each hole.
+enum class Holes {
+    /// All those of a solid. A mesh with holes is a solid if the winding number says so (Jacobson, Kavan and
+    /// Sorkine-Hornung 2013): in front of and behind at least nine tenths of its surface it is within 0.15 of a whole
+    /// number, and at least 1 behind half of it. Any other mesh stays a one-sided sheet.
+    of_solids,
+    of_all, ///< those of sheets, too, if they are flat or smaller than a tenth of the diagonal
+    none,
 };
 
 /// How much of a mesh prepare_mesh looks at.
@@ -110,19 +124,27 @@ struct PreparedMesh {
     std::vector<Vec3> vertices;                          ///< distinct positions, in order of their lowest file index
     std::vector<std::array<std::uint32_t, 3>> triangles; ///< indices into vertices
     std::vector<std::uint32_t> vertex_index;   ///< file index (the lowest, where several were welded) of each vertex
-    std::vector<std::uint32_t> triangle_index; ///< file index of each triangle, ascending; of pieces that of the whole
+    std::vector<std::uint32_t> triangle_index; ///< file index of each triangle, ascending; of pieces that of the whole;
+                                               ///< from report.file_triangles on: of those that span holes
     MeshReport report;                         ///< what it is, and what was repaired
 };
 
-/// Welds, checks and, where allowed, repairs. threads 0: one per core; no bit depends on it. Throws InputError naming
-/// the mesh for: no triangles or too many, an index out of range, a coordinate not finite or beyond 1e9 m, no triangle
-/// with an area, a box less than 1e-6 m long; and for more than 1024 threads.
-RAYCONTACT_API PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair = Repair::allowed,
-                                         Nesting nesting = Nesting::as_wound, Check check = Check::full,
-                                         std::uint32_t threads = 0);
+/// What prepare_mesh() does.
+struct PrepareOptions {
+    Repair repair = Repair::allowed;
+    Nesting nesting = Nesting::as_wound;
+    Holes holes = Holes::of_solids;
+    Check check = Check::full;
+    std::uint32_t threads = 0; ///< 0: one per core; no bit depends on it
+};
+
+/// Welds, checks and, where allowed, repairs. Throws InputError naming the mesh for: no triangles or too many, an index
+/// out of range, a coordinate not finite or beyond 1e9 m, no triangle with an area, a box less than 1e-6 m long; and
+/// for more than 1024 threads.
+RAYCONTACT_API PreparedMesh prepare_mesh(const Mesh& mesh, const PrepareOptions& options = {});
 
 /// The length by which weld_mesh() closes an open mesh whose corners differ in their last digits: the least power of
-/// ten that does, metres, up to 1e-4 of the diagonal of its box. None where none does, or the mesh is closed.
+/// ten that does, metres, up to 1e-4 of the diagonal of its box. None where none does, or the file is closed.
 RAYCONTACT_API std::optional<double> closing_weld(const PreparedMesh& mesh);
 
 /// Whether contacts with a mesh are what the rule of contact says: it is closed, wound outward, and does not intersect

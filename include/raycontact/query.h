@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <span>
 #include <vector>
 
 // Questions about one or two shapes, without a scene (docs/queries.md). They copy nothing and change nothing: safe to
@@ -57,6 +58,21 @@ struct ClosestPoint {
 /// as raycast().
 RAYCONTACT_API std::optional<ClosestPoint> closest_point(const Shape& shape, const Pose& pose, const Vec3& point,
                                                          double max = any_distance);
+
+/// How far a point is from a mesh, on which side, and what of the mesh is nearest.
+struct SignedDistance {
+    double distance = 0; ///< metres from the surface; below 0 exactly where contains() is true, but on the surface
+    std::uint32_t triangle = Shape::no_triangle; ///< on which the nearest point lies, index in the file
+    Vec3 point;                                  ///< the nearest of the surface, world frame
+    Vec3 gradient; ///< unit, world frame: the way in which the distance grows; on the surface the face's normal
+};
+
+/// The signed distance of many points, in their order. Value and point are as right as those of closest_point(); which
+/// of two triangles is named that are equally far, to rounding, is not told. Of a mesh without an inside no distance is
+/// below 0. Points near each other in the list share work. threads 0: one per core; no bit depends on it. Throws
+/// InputError for pose and points as raycast(), and for more than 1024 threads.
+RAYCONTACT_API std::vector<SignedDistance> signed_distance(const Shape& shape, const Pose& pose,
+                                                           std::span<const Vec3> points, std::uint32_t threads = 0);
 
 /// The least distance of two meshes, and where it is.
 struct Distance {

@@ -52,7 +52,7 @@ std::optional<Model> reduced_bunny(const std::filesystem::path& file, std::uint3
     try {
         auto mesh = simplify_to(prepare_mesh(load_mesh(file)), triangles);
         if (mesh) normalise(*mesh);
-        if (!mesh || !sound(prepare_mesh(*mesh, Repair::as_is).report)) { // once more: normalise rounds
+        if (!mesh || !sound(prepare_mesh(*mesh, {.repair = Repair::as_is}).report)) { // once more: normalise rounds
             why_not = "no reduction of " + file.string() + " to " + std::to_string(triangles)
                       + " triangles passed the checks";
             return std::nullopt;

@@ -109,9 +109,9 @@ std::optional<Mesh> simplify_to(const PreparedMesh& mesh, std::uint32_t triangle
             continue;
         Mesh candidate = compact(mesh, reduced);
         // Cheap to tell before the splits, and a bad mesh stays bad through them.
-        if (!sound(prepare_mesh(candidate, Repair::as_is).report)) continue;
+        if (!sound(prepare_mesh(candidate, {.repair = Repair::as_is}).report)) continue;
         while (candidate.triangles.size() < triangles) split_longest_edge(candidate);
-        if (candidate.triangles.size() == triangles && sound(prepare_mesh(candidate, Repair::as_is).report))
+        if (candidate.triangles.size() == triangles && sound(prepare_mesh(candidate, {.repair = Repair::as_is}).report))
             return candidate;
     }
     return std::nullopt;

@@ -173,8 +173,7 @@ void make_shapes(std::vector<Part>& parts, const std::vector<PartPair>& pairs, c
             std::shared_ptr<const Shape> shape;
             std::string fault;
             try {
-                shape = Shape::make(
-                    prepare_mesh(*wanted[i], Repair::allowed, Nesting::as_wound, Check::topology, of_one), of_one);
+                shape = Shape::make(prepare_mesh(*wanted[i], {.check = Check::topology, .threads = of_one}), of_one);
             } catch (const InputError& error) {
                 fault = without_name(error.what(), wanted[i]->name);
             }

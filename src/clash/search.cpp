@@ -188,9 +188,7 @@ void settle_doubts(std::span<Answer> answers, const std::vector<Part>& parts, Ex
     const std::uint32_t of_one = executor.threads_of_each(asked.size());
     executor.each(asked.size(), 1, [&](std::uint32_t i) {
         if (stop()) return;
-        sound[i] =
-            verdict_of(prepare_mesh(*asked[i]->mesh, Repair::allowed, Nesting::as_wound, Check::full, of_one).report)
-                .good;
+        sound[i] = verdict_of(prepare_mesh(*asked[i]->mesh, {.threads = of_one}).report).good;
     });
     const auto is_sound = [&](std::size_t part) { return sound[places.at(parts[part].mesh.get())] != 0; };
     for (Answer& answer : answers) {

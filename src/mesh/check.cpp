@@ -133,6 +133,15 @@ void check_surface(PreparedMesh& prepared, const Patches& patches, std::span<con
     report.checked = true;
 }
 
+namespace {
+
+std::string kind_of(const MeshReport& report) {
+    if (!report.closed || !report.oriented) return "sheet";
+    return report.holes > 0 ? "solid with holes" : "solid";
+}
+
+} // namespace
+
 std::string to_text(const MeshReport& report) {
     const auto yes = [](bool value) { return value ? "yes" : "no"; };
     std::string text;
@@ -143,6 +152,7 @@ std::string to_text(const MeshReport& report) {
          std::to_string(report.triangles) + " (file: " + std::to_string(report.file_triangles) + ")");
     line("closed             ", yes(report.closed));
     if (!report.closed) line("border edges       ", std::to_string(report.border_edges));
+    line("kind               ", kind_of(report));
     line("manifold           ", yes(report.manifold));
     line("oriented           ", yes(report.oriented));
     line("self-intersecting  ", yes(report.self_intersecting));
@@ -164,6 +174,9 @@ std::string to_json(const MeshReport& report) {
     json["file_triangles"] = report.file_triangles;
     json["closed"] = report.closed;
     json["border_edges"] = report.border_edges;
+    json["kind"] = kind_of(report);
+    json["holes"] = report.holes;
+    json["spanning"] = report.spanning;
     json["manifold"] = report.manifold;
     json["oriented"] = report.oriented;
     json["self_intersecting"] = report.self_intersecting;
@@ -194,6 +207,9 @@ Verdict verdict_of(const MeshReport& report) {
     else if (faults.empty() && !report.outward)
         faults.emplace_back("nested", "a part in a part is a solid of its own, and the closest face decides what is "
                                       "inside; make it a cavity (--cavities make) or a mesh of its own");
+    if (faults.empty() && report.holes > 0)
+        return {true, "good for contacts: a solid, of which " + counted(report.holes, "hole")
+                          + (report.holes == 1 ? " is" : " are") + " spanned"};
     if (faults.empty()) return {true, "good for contacts"};
     std::string text = faults[0].first + ": " + faults[0].second;
     for (std::size_t i = 1; i < faults.size(); ++i) text += (i == 1 ? "; also " : ", ") + faults[i].first;

@@ -47,15 +47,20 @@ int cross_triangle(const Vec3& direction, const Vec3& a, const Vec3& b, const Ve
     return along > 0 ? 1 : -1;
 }
 
-/// Finds all other triangles that a ray from the middle of a triangle crosses in the space in front of it. Tries
+Vec3 middle_of(std::uint32_t triangle, const PreparedMesh& mesh) {
+    const auto [a, b, c] = mesh.triangles[triangle];
+    return (1.0 / 3) * (mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]);
+}
+
+/// Finds all other triangles that a ray from a point of a triangle crosses in the space in front of it. Tries
 /// directions until one is clear, by more than rounding, of every edge and of surface at its origin; false if none is.
-bool cast_from(std::uint32_t from, const PreparedMesh& mesh, const MeshTree& tree, std::vector<Crossing>& crossings) {
+bool cast_from(std::uint32_t from, const Vec3& origin, const PreparedMesh& mesh, const MeshTree& tree,
+               std::vector<Crossing>& crossings) {
     const auto corners = [&](std::uint32_t t) {
         const auto [a, b, c] = mesh.triangles[t];
         return std::array{mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
     };
     const auto [a, b, c] = corners(from);
-    const Vec3 origin = (1.0 / 3) * (a + b + c);
     const Vec3 scaled = cross(b - a, c - a);
     const double size = length(scaled);
     if (!(size > 0)) return false;
@@ -110,7 +115,7 @@ std::size_t patches_around(std::uint32_t own, std::span<const std::uint32_t> fro
     std::vector<std::uint32_t> around;
     std::vector<Crossing> crossings;
     for (std::size_t k = 0; k < from.size(); ++k) {
-        if (!cast_from(from[k], mesh, tree, crossings)) return 0; // not known: not nested
+        if (!cast_from(from[k], middle_of(from[k], mesh), mesh, tree, crossings)) return 0; // not known: not nested
         std::map<std::uint32_t, std::size_t> times;
         for (const Crossing& crossing : crossings) ++times[patches.of[crossing.triangle]];
         if (k == 0) {
@@ -160,6 +165,15 @@ std::vector<char> patches_to_turn(const PreparedMesh& mesh, const Patches& patch
     return turn;
 }
 
+std::optional<int> winding_in_front(std::uint32_t triangle, const Vec3& point, const PreparedMesh& mesh,
+                                    const MeshTree& tree) {
+    std::vector<Crossing> crossings;
+    if (!cast_from(triangle, point, mesh, tree, crossings)) return std::nullopt;
+    int winding = 0;
+    for (const Crossing& crossing : crossings) winding += crossing.sign;
+    return winding;
+}
+
 // The winding number changes by one across every triangle and nowhere else. Without self-intersections the space right
 // in front of a patch is connected and crosses no triangle (a patch continues only across edges that have no third
 // triangle), so one point in front of each patch, with winding number 0 there and hence 1 behind, represents all space
@@ -175,13 +189,9 @@ bool winds_outward(const PreparedMesh& mesh, const Patches& patches, const MeshT
             largest[patches.of[t]] = t;
         }
     }
-    std::vector<Crossing> crossings;
     for (std::size_t p = 0; p < patches.list.size(); ++p) {
         if (area[p] == 0) continue; // degenerate triangles bound nothing
-        if (!cast_from(largest[p], mesh, tree, crossings)) return false;
-        int winding = 0;
-        for (const Crossing& crossing : crossings) winding += crossing.sign;
-        if (winding != 0) return false;
+        if (winding_in_front(largest[p], middle_of(largest[p], mesh), mesh, tree) != 0) return false;
     }
     return true;
 }

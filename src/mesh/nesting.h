@@ -6,6 +6,7 @@
 #include "mesh/mesh_tree.h"
 #include "mesh/patches.h"
 
+#include <optional>
 #include <vector>
 
 namespace raycontact {
@@ -15,6 +16,10 @@ namespace raycontact {
 /// they are.
 std::vector<char> patches_to_turn(const PreparedMesh& mesh, const Patches& patches, const LazyTree& tree,
                                   Nesting nesting);
+
+/// The winding number of a closed mesh right in front of a point of a triangle; nothing where rounding could change it.
+std::optional<int> winding_in_front(std::uint32_t triangle, const Vec3& point, const PreparedMesh& mesh,
+                                    const MeshTree& tree);
 
 /// Whether the winding number of a closed, oriented mesh without self-intersections is 0 outside and 1 inside
 /// everywhere.

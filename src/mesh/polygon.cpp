@@ -245,9 +245,7 @@ void cut(Mesh& mesh, std::size_t first, std::size_t count) {
         if (!(std::max({std::fabs(place.x), std::fabs(place.y), std::fabs(place.z)}) <= greatest_coordinate)) return;
         places.push_back(snapped(place));
     }
-    const View view = view_of(places);
-    if (view.way == 0 || fan_is_right(view)) return;
-    const std::vector<Triangle> triangles = EarClipper(view).cut();
+    const std::vector<Triangle> triangles = cut_polygon(places);
     for (std::size_t i = 0; i < triangles.size(); ++i)
         for (std::size_t k = 0; k < 3; ++k) mesh.triangles[first + i][k] = corners[triangles[i][k]];
 }
@@ -257,6 +255,15 @@ bool are_vertices(std::span<const std::uint32_t> corners, const Mesh& mesh) {
 }
 
 } // namespace
+
+std::vector<Triangle> cut_polygon(std::span<const Vec3> corners) {
+    const View view = view_of(corners);
+    if (view.way == 0) return {};
+    if (!fan_is_right(view)) return EarClipper(view).cut();
+    std::vector<Triangle> fan;
+    for (std::uint32_t i = 2; i < corners.size(); ++i) fan.push_back({0, i - 1, i});
+    return fan;
+}
 
 void PolygonCutter::append(Mesh& mesh, std::span<const std::uint32_t> corners) {
     const std::size_t first = mesh.triangles.size();

@@ -3,6 +3,8 @@
 
 #include <raycontact/mesh.h>
 
+#include "mesh/adjacency.h"
+
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -10,6 +12,10 @@
 #include <vector>
 
 namespace raycontact {
+
+/// The triangles of a polygon of at least 3 corners, as PolygonCutter has them, by the corners' numbers; none where the
+/// fan of the first corner would have to stay. Corners are exact for predicates (snapped()).
+std::vector<Triangle> cut_polygon(std::span<const Vec3> corners);
 
 /// Cuts the polygons of a file into triangles: n - 2 of a polygon of n corners, so that a file's triangles can be
 /// counted without knowing where they lie. It is the fan of the first corner where all triangles of the fan have an

@@ -5,6 +5,7 @@
 #include "executor/float_environment.h"
 #include "mesh/check.h"
 #include "mesh/degenerate.h"
+#include "mesh/holes.h"
 #include "mesh/input_file.h"
 #include "mesh/lowest_equal.h"
 #include "mesh/nesting.h"
@@ -88,10 +89,26 @@ void number_vertices(const Mesh& mesh, PreparedMesh& prepared) {
     }
 }
 
+/// Welded by exact position; with `repair` without the triangles that are of no use.
+PreparedMesh welded(const Mesh& mesh, bool repair) {
+    PreparedMesh prepared = weld(mesh);
+    prepared.report.file_vertices = mesh.vertices.size();
+    prepared.report.file_triangles = mesh.triangles.size();
+    if (repair) drop_triangles(prepared, mesh.vertices);
+    number_vertices(mesh, prepared);
+    return prepared;
+}
+
+bool has_border(std::span<const HalfEdge> edges) {
+    bool any = false;
+    for_each_edge(edges, [&](std::span<const HalfEdge> sides) { any = any || sides.size() % 2 != 0; });
+    return any;
+}
+
 /// Splits triangles at the T-junctions of borders, and reports how many; whether any. The pieces of a triangle have its
 /// index.
-bool stitch(PreparedMesh& prepared, std::span<const HalfEdge> edges, Executor& executor) {
-    const Stitched stitched = stitch_borders(prepared.triangles, prepared.vertices, edges, executor);
+bool stitch(PreparedMesh& prepared, std::span<const HalfEdge> edges, double within, Executor& executor) {
+    const Stitched stitched = stitch_borders(prepared.triangles, prepared.vertices, edges, within, executor);
     std::vector<std::string>& repairs = prepared.report.repairs;
     if (stitched.given_up)
         repairs.push_back("left T-junctions as they are: too many vertices lie on borders of others");
@@ -136,37 +153,100 @@ bool mend_windings(PreparedMesh& prepared, const Patches& patches, const LazyTre
     return triangles != before;
 }
 
+/// The triangles that a mesh is checked by: those with an area, in a tree that is made when it is first asked for.
+class Surface {
+public:
+    Surface(std::span<const Triangle> triangles, std::span<const Vec3> exact, Executor& executor)
+        : triangles_(triangles), exact_(exact), executor_(executor), with_area_(triangles_with_area(triangles, exact)) {
+    }
+
+    bool is_empty() const { return with_area_.empty(); }
+    const MeshTree& tree() const { return tree_ ? *tree_ : tree_.emplace(exact_, triangles_, with_area_, executor_); }
+
+private:
+    std::span<const Triangle> triangles_;
+    std::span<const Vec3> exact_;
+    Executor& executor_;
+    std::vector<std::uint32_t> with_area_;
+    mutable std::optional<MeshTree> tree_;
+};
+
+/// Spans the holes that `which` names, and reports them. The surface as it is then; nothing if there are no holes.
+std::optional<Surface> span_holes(PreparedMesh& prepared, std::span<const HalfEdge> edges, std::span<const Vec3> exact,
+                                  Holes which, Executor& executor) {
+    std::vector<Hole> holes = find_holes(prepared.triangles, exact, edges);
+    if (holes.empty()) return std::nullopt;
+    MeshReport& report = prepared.report;
+    const std::size_t first = prepared.triangles.size();
+    const auto append = [&] {
+        for (const Hole& hole : holes)
+            prepared.triangles.insert(prepared.triangles.end(), hole.triangles.begin(), hole.triangles.end());
+        report.holes = holes.size();
+        report.spanning = prepared.triangles.size() - first;
+    };
+    append();
+    std::optional<Surface> surface(std::in_place, prepared.triangles, exact, executor);
+    if (!is_solid(prepared, first, surface->tree(), executor)) {
+        prepared.triangles.resize(first);
+        const double small = 0.1 * length(box_of(exact).high - box_of(exact).low);
+        std::erase_if(holes, [&](const Hole& hole) {
+            return which != Holes::of_all || !(hole.flat || size_of(hole, exact) <= small);
+        });
+        append();
+        surface.emplace(prepared.triangles, exact, executor);
+        if (holes.empty()) return surface;
+    }
+    const std::size_t number = report.file_triangles;
+    for (std::size_t i = 0; i < report.spanning; ++i)
+        prepared.triangle_index.push_back(static_cast<std::uint32_t>(number + i));
+    report.repairs.push_back("spanned " + counted(holes.size(), "hole") + " with "
+                             + counted(report.spanning, "triangle") + ", numbered from " + std::to_string(number)
+                             + " on");
+    constexpr std::size_t most_named = 20;
+    for (std::size_t i = 0; i < std::min(holes.size(), most_named); ++i)
+        report.repairs.push_back("spanned a " + text_of(holes[i], exact));
+    return surface;
+}
+
 } // namespace
 
-PreparedMesh prepare_mesh(const Mesh& mesh, Repair repair, Nesting nesting, Check check, std::uint32_t threads) {
+PreparedMesh prepare_mesh(const Mesh& mesh, const PrepareOptions& options) {
     const FloatEnvironment environment; // the predicates need rounding to nearest
     const std::string name = mesh.name.empty() ? "mesh" : printable(mesh.name);
     check_mesh(mesh, name);
     check_reach(mesh, name);
-    PreparedMesh prepared = weld(mesh);
-    if (repair == Repair::allowed) drop_triangles(prepared, mesh.vertices);
-    number_vertices(mesh, prepared);
-    Executor executor(threads_for(prepared.triangles.size(), threads));
+    const bool repair = options.repair == Repair::allowed;
+    PreparedMesh prepared = welded(mesh, repair);
+    Executor executor(threads_for(prepared.triangles.size(), options.threads));
     std::vector<HalfEdge> edges = sorted_half_edges(prepared.triangles);
-    if (repair == Repair::allowed && stitch(prepared, edges, executor)) edges = sorted_half_edges(prepared.triangles);
+    if (repair && has_border(edges)) {
+        const double within = border_tolerance(prepared.vertices);
+        if (const auto joined = join_borders(mesh, prepared, edges, within)) {
+            prepared = welded(*joined, true);
+            edges = sorted_half_edges(prepared.triangles);
+        }
+        if (stitch(prepared, edges, within, executor)) edges = sorted_half_edges(prepared.triangles);
+    }
 
     const std::vector<Vec3> exact = all_snapped(prepared.vertices);
-    const std::vector<std::uint32_t> with_area = triangles_with_area(prepared.triangles, exact);
-    if (with_area.empty()) throw InputError(name + ": no triangle has an area");
+    std::optional<Surface> surface(std::in_place, prepared.triangles, exact, executor);
+    if (surface->is_empty()) throw InputError(name + ": no triangle has an area");
     check_size(prepared.vertices, name);
-    std::optional<MeshTree> made;
-    const auto tree = [&]() -> const MeshTree& {
-        return made ? *made : made.emplace(exact, prepared.triangles, with_area, executor);
-    };
-    const Patches patches = find_patches(prepared.triangles, edges);
-    if (repair == Repair::allowed) {
-        if (mend_windings(prepared, patches, tree, nesting)) edges = sorted_half_edges(prepared.triangles);
+    Patches patches = find_patches(prepared.triangles, edges);
+    if (repair) {
+        const auto tree = [&]() -> const MeshTree& { return surface->tree(); };
+        if (mend_windings(prepared, patches, tree, options.nesting)) edges = sorted_half_edges(prepared.triangles);
     }
-    prepared.report.file_vertices = mesh.vertices.size();
-    prepared.report.file_triangles = mesh.triangles.size();
+    if (repair && options.holes != Holes::none) {
+        if (std::optional<Surface> spanned = span_holes(prepared, edges, exact, options.holes, executor)) {
+            surface.emplace(std::move(*spanned));
+            edges = sorted_half_edges(prepared.triangles);
+            patches = find_patches(prepared.triangles, edges);
+        }
+    }
     fill_report(prepared, edges);
     prepared.report.checked = false;
-    if (check == Check::full) check_surface(prepared, patches, exact, tree(), executor);
+    if (options.check == Check::full) check_surface(prepared, patches, exact, surface->tree(), executor);
     return prepared;
 }
 

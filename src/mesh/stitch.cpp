@@ -2,6 +2,7 @@
 #include "mesh/stitch.h"
 
 #include "mesh/input_file.h"
+#include "mesh/measure.h"
 #include "mesh/mesh_tree.h"
 #include "mesh/vector.h"
 
@@ -62,8 +63,13 @@ bool split(std::vector<Triangle>& pieces, std::size_t& piece, unsigned edge, std
 
 } // namespace
 
+double border_tolerance(std::span<const Vec3> vertices) {
+    const Box box = box_of(vertices);
+    return std::min(2 * last_digit(vertices), 1e-4 * length(box.high - box.low));
+}
+
 Stitched stitch_borders(std::span<const Triangle> triangles, std::span<const Vec3> vertices,
-                        std::span<const HalfEdge> edges, Executor& executor) {
+                        std::span<const HalfEdge> edges, double within, Executor& executor) {
     Stitched result;
     std::vector<std::uint32_t> corners, ends; // of border edges
     for_each_edge(edges, [&](std::span<const HalfEdge> sides) {
@@ -79,8 +85,6 @@ Stitched stitch_borders(std::span<const Triangle> triangles, std::span<const Vec
     std::vector<std::uint32_t> all(points.size());
     std::iota(all.begin(), all.end(), 0u);
     const MeshTree tree(vertices, points, all, executor);
-    const Box box = box_of(vertices);
-    const double within = std::min(2 * last_digit(vertices), 1e-4 * length(box.high - box.low));
     const std::size_t most_blocks = 64 * (ends.size() + corners.size()) + 100'000;
     const std::size_t most_junctions = std::min(4 * ends.size(), most_triangles - triangles.size());
     std::size_t blocks = 0;

@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <raycontact/pose.h>
+#include <raycontact/mesh.h>
 
 #include "executor/executor.h"
 #include "mesh/adjacency.h"
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
 namespace raycontact {
+
+/// How far beside a border edge a border vertex may lie that a file means to be on it: twice the last digit of the
+/// coordinates, and 1e-4 of the box's diagonal at most. Metres.
+double border_tolerance(std::span<const Vec3> vertices);
 
 /// What was done about T-junctions.
 struct Stitched {
@@ -21,11 +26,15 @@ struct Stitched {
     bool given_up = false;           ///< some were not sought: too many lie near too many edges
 };
 
-/// Splits triangles at vertices of borders that lie on their border edges: no farther off than twice the last digit of
-/// the coordinates, and 1e-4 of the box's diagonal. Corner k of a piece, and the edge from there on, is that of the
-/// triangle where the piece has it or a part of it. Every vertex must be in use, and equal ones have equal indices.
-/// edges: the sorted half edges of the triangles.
+/// Splits triangles at vertices of borders that lie on their border edges, no farther off than `within` metres. Corner
+/// k of a piece, and the edge from there on, is that of the triangle where the piece has it or a part of it. Every
+/// vertex must be in use, and equal ones have equal indices. edges: the sorted half edges of the triangles.
 Stitched stitch_borders(std::span<const Triangle> triangles, std::span<const Vec3> vertices,
-                        std::span<const HalfEdge> edges, Executor& executor);
+                        std::span<const HalfEdge> edges, double within, Executor& executor);
+
+/// Moves vertices of borders to others of borders that are nearer than `within` metres and 1e-6 of the box's diagonal,
+/// as weld_mesh() chooses them; nothing where none is. prepared: of the mesh; edges: its sorted half edges.
+std::optional<Mesh> join_borders(const Mesh& mesh, const PreparedMesh& prepared, std::span<const HalfEdge> edges,
+                                 double within);
 
 } // namespace raycontact

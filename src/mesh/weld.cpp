@@ -5,6 +5,8 @@
 #include "interruption.h"
 #include "mesh/check.h"
 #include "mesh/lowest_equal.h"
+#include "mesh/measure.h"
+#include "mesh/stitch.h"
 #include "number_text.h"
 #include "printable.h"
 
@@ -13,7 +15,9 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <map>
 #include <numeric>
+#include <optional>
 #include <tuple>
 #include <utility>
 
@@ -107,6 +111,15 @@ double power_of_ten(int power) {
 
 using Edge = std::pair<std::uint32_t, std::uint32_t>;
 
+/// The edges with an odd number of triangles.
+std::vector<Edge> border_of(std::span<const HalfEdge> edges) {
+    std::vector<Edge> border;
+    for_each_edge(edges, [&](std::span<const HalfEdge> sides) {
+        if (sides.size() % 2 != 0) border.emplace_back(sides[0].lo, sides[0].hi);
+    });
+    return border;
+}
+
 /// Whether no edge is left an odd number of times once its ends are joined.
 bool closes(const std::vector<Edge>& border, const std::vector<std::uint32_t>& to) {
     std::vector<Edge> edges;
@@ -158,12 +171,45 @@ Mesh weld_mesh(Mesh mesh, double length) {
     return mesh;
 }
 
+std::optional<Mesh> join_borders(const Mesh& mesh, const PreparedMesh& prepared, std::span<const HalfEdge> edges,
+                                 double within) {
+    std::vector<std::uint32_t> ends;
+    for (const auto& [a, b] : border_of(edges)) ends.insert(ends.end(), {a, b});
+    if (ends.empty()) return std::nullopt;
+    std::ranges::sort(ends);
+    ends.erase(std::ranges::unique(ends).begin(), ends.end());
+    std::vector<Vec3> places(prepared.vertices);
+    for (Vec3& p : places) p = p + Vec3{}; // turns -0 into 0
+    const Box box = box_of(places);        // a small part of a large whole may be no longer than the last digit
+    const double most = 1e-6 * length(box.high - box.low);
+    const std::vector<std::uint32_t> to = joined(places, ends, std::min(within, most));
+    const auto moves = [&](std::uint32_t v) { return to[v] != v; };
+    const auto moved = static_cast<std::size_t>(std::ranges::count_if(ends, moves));
+    if (moved == 0) return std::nullopt;
+    Mesh result(mesh);
+    double farthest = 0;
+    std::map<std::array<double, 3>, std::uint32_t> moving; // by place: a file may have a vertex many times
+    for (const std::uint32_t v : ends) {
+        if (!moves(v)) continue;
+        moving.emplace(std::array{places[v].x, places[v].y, places[v].z}, v);
+        farthest = std::max(farthest, length(places[to[v]] - places[v]));
+    }
+    for (Vec3& vertex : result.vertices) {
+        const Vec3 p = vertex + Vec3{};
+        if (const auto found = moving.find({p.x, p.y, p.z}); found != moving.end()) vertex = places[to[found->second]];
+    }
+    result.repairs.push_back("joined " + std::to_string(moved) + (moved == 1 ? " vertex" : " vertices")
+                             + " of borders with others, up to " + text_of(farthest) + " m away");
+    return result;
+}
+
 std::optional<double> closing_weld(const PreparedMesh& mesh) {
-    if (mesh.report.closed) return std::nullopt;
-    std::vector<Edge> border;
-    for_each_edge(sorted_half_edges(mesh.triangles), [&](std::span<const HalfEdge> sides) {
-        if (sides.size() % 2 != 0) border.emplace_back(sides[0].lo, sides[0].hi);
-    });
+    if (mesh.report.closed && mesh.report.holes == 0) return std::nullopt;
+    const auto of_file = mesh.triangles.size() - mesh.report.spanning;
+    const std::vector<Triangle> triangles(mesh.triangles.begin(),
+                                          mesh.triangles.begin() + static_cast<std::ptrdiff_t>(of_file));
+    const std::vector<Edge> border = border_of(sorted_half_edges(triangles));
+    if (border.empty()) return std::nullopt;
     std::vector<std::uint32_t> ends;
     for (const auto& [a, b] : border) ends.insert(ends.end(), {a, b});
     std::sort(ends.begin(), ends.end());
@@ -175,8 +221,8 @@ std::optional<double> closing_weld(const PreparedMesh& mesh) {
         const double length = power_of_ten(power);
         if (length < std::max(1e-6 * most, step) || !closes(border, joined(mesh.vertices, ends, length))) continue;
         // Vertices away from the border may have a say, too.
-        const Mesh welded = weld_mesh({mesh.name, mesh.vertices, mesh.triangles}, length);
-        if (prepare_mesh(welded, Repair::allowed, Nesting::as_wound, Check::topology).report.closed) return length;
+        const Mesh welded = weld_mesh({mesh.name, mesh.vertices, triangles}, length);
+        if (prepare_mesh(welded, {.holes = Holes::none, .check = Check::topology}).report.closed) return length;
     }
     return std::nullopt;
 }

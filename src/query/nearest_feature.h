@@ -22,6 +22,7 @@ public:
 
     const Vec3& point() const { return point_; }
     const Vec3& away() const { return away_; } ///< from there to what is sought; less rounded than their difference
+    bool is_face() const { return kind_ == Kind::face; } ///< not a corner or an edge
     double distance() const { return distance_; }
     double error() const { return error_; } ///< of the distance, at most
     /// -1: nearer than another one, which is of the same mesh and the same point; 0: as near. Exact.

@@ -94,7 +94,7 @@ Shape::Shape(std::unique_ptr<Data> data) : data_(std::move(data)) {
 Shape::~Shape() = default;
 
 std::shared_ptr<const Shape> Shape::make(const Mesh& mesh, std::uint32_t threads) {
-    return make(prepare_mesh(mesh, Repair::allowed, Nesting::as_wound, Check::full, threads), threads);
+    return make(prepare_mesh(mesh, {.threads = threads}), threads);
 }
 
 std::shared_ptr<const Shape> Shape::make(PreparedMesh mesh, std::uint32_t threads) {

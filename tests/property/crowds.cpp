@@ -140,7 +140,8 @@ const std::vector<std::shared_ptr<const Shape>>& crowd_shapes(Kind kind, double 
     auto& shapes = made[{kind, scale}];
     if (shapes.empty())
         for (const Mesh& mesh : meshes_of(kind))
-            shapes.push_back(prepared_shape(prepare_mesh(stretched(mesh, {scale, scale, scale}), Repair::as_is)));
+            shapes.push_back(
+                prepared_shape(prepare_mesh(stretched(mesh, {scale, scale, scale}), {.repair = Repair::as_is})));
     return shapes;
 }
 

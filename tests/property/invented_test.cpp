@@ -82,7 +82,8 @@ struct Cloud {
 
 Cloud make_cloud(const Subject& target, Aim aim, std::uint32_t triangles, Random& random) {
     Cloud cloud;
-    cloud.shape = prepared_shape(prepare_mesh(ray_cloud(target.solid, aim, triangles, random), Repair::as_is));
+    cloud.shape =
+        prepared_shape(prepare_mesh(ray_cloud(target.solid, aim, triangles, random), {.repair = Repair::as_is}));
     cloud.vertices.assign(cloud.shape->vertices().begin(), cloud.shape->vertices().end());
     return cloud;
 }
@@ -173,7 +174,7 @@ TEST(invented, grazing_silhouettes) {
 // Rays along the axes from points of a dyadic grid: everything is exact, and they run inside faces, along edges and
 // through vertices of axis-aligned meshes, and in the planes of every bounding box.
 TEST(invented, along_the_axes_of_boxes) {
-    const auto source = prepared_shape(prepare_mesh(needle(), Repair::as_is));
+    const auto source = prepared_shape(prepare_mesh(needle(), {.repair = Repair::as_is}));
     ASSERT_TRUE(std::isinf(source->exit_distances()[0]));
     const std::vector<Pose> rotations = axis_rotations();
     ASSERT_EQ(rotations.size(), 24u);

@@ -83,6 +83,43 @@ def test_rays_and_points_of_a_torus(torus):
     assert rc.closest_point(torus, [0, 0, 0], max=0.1).distance == np.inf
 
 
+def test_signed_distances_and_grids(torus):
+    points = RNG.uniform(-1.5, 1.5, (2000, 3))
+    found = rc.signed_distance(torus, points)
+    near = rc.closest_point(torus, points)
+    assert np.array_equal(np.abs(found.distance), near.distance) and np.array_equal(found.triangle, near.triangle)
+    assert np.array_equal(found.distance < 0, rc.contains(torus, points)) and (found.distance < 0).any()
+    assert np.allclose(points - found.distance[:, None] * found.gradient, found.point, atol=1e-12)
+    # Over batches, of one point, placed.
+    assert np.array_equal(rc.signed_distance(torus, points.reshape(20, 100, 3)).distance.ravel(), found.distance)
+    assert rc.signed_distance(torus, points[7]).distance == found.distance[7]
+    poses = helpers.random_poses(2000, 6)
+    placed = np.einsum("nij,nj->ni", poses[:, :3, :3], points) + poses[:, :3, 3]
+    assert np.allclose(rc.signed_distance(torus, placed, poses).distance, found.distance, atol=1e-12)
+
+    grid = rc.distance_grid(torus, (12, 10, 7))
+    assert grid.shape == (12, 10, 7)
+    low, high = torus.box
+    corner = [low[0], high[1], low[2] + (high[2] - low[2]) * 3 / 6]
+    assert np.isclose(grid[0, -1, 3], rc.signed_distance(torus, corner).distance, atol=1e-12)
+    assert rc.distance_grid(torus, (1, 1, 2), low=[0, 0, 0], high=[0, 0, 1])[0, 0, 0] > 0
+    with pytest.raises(rc.InputError, match="counts"):
+        rc.distance_grid(torus, (0, 2, 2))
+
+
+def test_holes_are_spanned_where_the_mesh_is_a_solid():
+    vertices, faces = meshes.torus()
+    holed = np.delete(faces, [3, 200], axis=0)
+    shape = rc.Shape(rc.Mesh(vertices, holed))
+    assert shape.has_inside and shape.report.holes == 2 and shape.report.spanning == 2
+    assert shape.triangle_index[-1] == len(holed) + 1
+    assert not rc.Shape(rc.Mesh(vertices, holed), holes="none").has_inside
+    half = faces[vertices[faces][:, :, 2].max(axis=1) > 0]
+    assert not rc.Shape(rc.Mesh(vertices, half)).has_inside
+    with pytest.raises(rc.InputError, match="of_solids, of_all or none"):
+        rc.Shape(rc.Mesh(vertices, faces), holes="all")
+
+
 @pytest.mark.parametrize(
     ("ask", "says"),
     [

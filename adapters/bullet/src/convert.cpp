@@ -393,7 +393,7 @@ void check_numbers(const btCollisionShape& shape) {
 
 Converted ShapeCache::convert(Mesh mesh, Repair repair) {
     ++made_;
-    PreparedMesh prepared = prepare_mesh(mesh, repair, Nesting::as_wound, Check::topology, threads_);
+    PreparedMesh prepared = prepare_mesh(mesh, {.repair = repair, .check = Check::topology, .threads = threads_});
     mesh = {}; // a large one is large beside its shape
     const auto shape = Shape::make(std::move(prepared), threads_);
     return {shape, std::make_shared<const BulletMesh>(shape)};
@@ -489,7 +489,7 @@ std::shared_ptr<const Shape> stretch_shape(const Shape& shape, const Stretch& s,
         for (auto& t : plain.triangles) std::swap(t[1], t[2]);
     // Lengths, areas and volumes have changed: check again, but keep the file's indices.
     PreparedMesh mesh;
-    mesh.report = prepare_mesh(plain, Repair::as_is, Nesting::as_wound, Check::topology, threads).report;
+    mesh.report = prepare_mesh(plain, {.repair = Repair::as_is, .check = Check::topology, .threads = threads}).report;
     mesh.name = std::move(plain.name);
     mesh.vertices = std::move(plain.vertices);
     mesh.triangles = std::move(plain.triangles);

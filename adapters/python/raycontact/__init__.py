@@ -5,8 +5,8 @@
     part = rc.Shape("part.stl")
     print(rc.collide(part, part, pose_b=pose))
 
-`Mesh` and `Shape` hold meshes; `collide`, `intersects`, `distance`, `closest_point`, `raycast` and `contains` answer
-questions about one pair or many at once; a `Scene` steps bodies in time. Metres, poses as 4 x 4 matrices, normals from
+`Mesh` and `Shape` hold meshes; `collide`, `intersects`, `distance`, `closest_point`, `signed_distance`, `raycast` and
+`contains` answer questions about one pair or many at once; a `Scene` steps bodies in time. Metres, poses as 4 x 4 matrices, normals from
 a to b, depth > 0 where meshes penetrate. Bad input raises InputError, a ValueError.
 """
 
@@ -21,14 +21,17 @@ from .queries import (
     ClosestPoint,
     Distance,
     RayHit,
+    SignedDistance,
     closest_point,
     collide,
     common_point,
     contains,
     distance,
+    distance_grid,
     intersects,
     raycast,
     raycast_any,
+    signed_distance,
 )  # fmt: skip
 from .recording import RecordedStep, Recorder, Recording
 from .scene import BodyClosestPoints, BodyRayHits, LostContacts, Scene
@@ -41,7 +44,7 @@ __all__ = [
     "CONTACT_DTYPE", "AssemblyPart", "BodyClosestPoints", "BodyRayHits", "Clash", "Clashes", "ClosestPoint",
     "CollisionManager", "Contacts", "DeviceInfo", "Distance", "FeatureKind", "InputError", "LostContacts", "Mass",
     "Mesh", "MeshReport", "PairContacts", "RayHit", "RecordedStep", "Recorder", "Recording", "Scene", "Shape",
-    "StepStats", "clash", "closest_point", "collide", "common_point", "contains", "distance", "intersects",
-    "list_devices", "load_assembly", "nearest_rigid", "pose", "pose_from_quaternion", "raycast", "raycast_any",
-    "show",
+    "SignedDistance", "StepStats", "clash", "closest_point", "collide", "common_point", "contains", "distance",
+    "distance_grid", "intersects", "list_devices", "load_assembly", "nearest_rigid", "pose", "pose_from_quaternion",
+    "raycast", "raycast_any", "show", "signed_distance",
 ]  # fmt: skip

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
+from ._core import InputError
 from ._arrays import Batch, as_count, as_length, as_points, as_poses
 from .contacts import PairContacts
 from .scene import as_settings
@@ -53,6 +54,22 @@ class ClosestPoint(NamedTuple):
     distance: Union[float, NDArray[np.float64]]
     point: NDArray[np.float64]
     triangle: Union[int, NDArray[np.int64]]
+
+
+class SignedDistance(NamedTuple):
+    """How far a point is from a mesh, on which side, and what of the mesh is nearest.
+
+    distance: a float or (n,) float64, metres from the surface; below 0 inside, as `contains` has it.
+    point: (3,) or (n, 3) float64, metres, world frame: the nearest of the surface.
+    triangle: an int or (n,) int64: on which that lies, index in the mesh; of several the lowest.
+    gradient: (3,) or (n, 3) float64, unit, world frame: the way in which the distance grows; on the surface the face's
+        normal.
+    """
+
+    distance: Union[float, NDArray[np.float64]]
+    point: NDArray[np.float64]
+    triangle: Union[int, NDArray[np.int64]]
+    gradient: NDArray[np.float64]
 
 
 class RayHit(NamedTuple):
@@ -222,6 +239,45 @@ def closest_point(
     return ClosestPoint(*placed.answers(found))
 
 
+def signed_distance(
+    shape: ShapeLike, points: ArrayLike, pose: Optional[ArrayLike] = None, *, threads: int = 0
+) -> SignedDistance:
+    """How far each point is from a mesh: above 0 outside, below 0 inside; never below 0 of a mesh without an inside.
+
+    Which side is decided exactly, value and point are as right as those of `closest_point`. Points that lie near each
+    other share work, in whatever order they come. Arguments and errors are those of `closest_point`.
+    """
+    placed = _Placed(pose, points=points)
+    places = placed.vectors["points"]
+    found = _core.signed_distances(as_shape(shape)._core, placed.poses, places, as_count(threads, "threads"))
+    return SignedDistance(*placed.answers(found))
+
+
+def distance_grid(
+    shape: ShapeLike,
+    counts: tuple[int, int, int],
+    low: Optional[ArrayLike] = None,
+    high: Optional[ArrayLike] = None,
+    *,
+    threads: int = 0,
+) -> NDArray[np.float64]:
+    """`signed_distance` at the points of a grid: `grid[i, j, k]` of the i-th x, the j-th y and the k-th z.
+
+    counts: points along x, y and z, at least 1 each.
+    low, high: (3,), metres, body frame: the first and the last point of each axis; None is the mesh's box.
+    Gives counts float64, metres. Raises InputError for counts below 1 and corners that are not finite.
+    """
+    made = as_shape(shape)
+    sizes = [as_count(count, "counts") for count in counts]
+    if len(sizes) != 3 or min(sizes) < 1:
+        raise InputError("counts are three numbers of points, each at least 1")
+    ends = [as_points(given, name).reshape(3) for given, name in (
+        (made.box[0] if low is None else low, "low"), (made.box[1] if high is None else high, "high"))]  # fmt: skip
+    axes = [np.linspace(ends[0][k], ends[1][k], sizes[k]) for k in range(3)]
+    points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
+    return signed_distance(made, points, threads=threads).distance
+
+
 def raycast(
     shape: ShapeLike,
     origins: ArrayLike,
@@ -284,6 +340,6 @@ def contains(
 
 
 __all__ = [
-    "ClosestPoint", "Distance", "RayHit", "closest_point", "collide", "common_point", "contains", "distance",
-    "intersects", "raycast", "raycast_any",
+    "ClosestPoint", "Distance", "RayHit", "SignedDistance", "closest_point", "collide", "common_point", "contains",
+    "distance", "distance_grid", "intersects", "raycast", "raycast_any", "signed_distance",
 ]  # fmt: skip

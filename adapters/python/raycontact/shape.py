@@ -39,6 +39,9 @@ class Shape:
         names what was done. False: change nothing.
     nesting: which way closed components wind: "as_wound" (outermost ones outward, those inside others as they are),
         "cavities" (by turns outward and inward), "solids" (all outward).
+    holes: which are spanned with triangles of our own, numbered after those of the mesh: "of_solids" (all, if the
+        winding number says that the mesh is a solid; docs/conventions.md, Holes), "of_all" (of sheets, too, if they are
+        flat or smaller than a tenth of the diagonal), "none".
     threads: 0 is one for each core; no bit depends on it.
 
     Raises InputError for a mesh without area, and as `Mesh` does. Safe to use from any thread.
@@ -51,11 +54,12 @@ class Shape:
         scale: float = 1.0,
         repair: bool = True,
         nesting: str = "as_wound",
+        holes: str = "of_solids",
         threads: int = 0,
     ) -> None:
         if not isinstance(mesh, Mesh) or scale != 1.0:
             mesh = Mesh(mesh, scale=scale)
-        self._core = _core.make_shape(mesh._core, bool(repair), str(nesting), as_count(threads, "threads"))
+        self._core = _core.make_shape(mesh._core, bool(repair), str(nesting), str(holes), as_count(threads, "threads"))
 
     @classmethod
     def _wrap(cls, core: _core.Shape) -> Shape:

@@ -44,6 +44,8 @@ void bind_report(nb::module_& m) {
         .def_ro("file_triangles", &MeshReport::file_triangles, "as given, polygons split")
         .def_ro("closed", &MeshReport::closed, "every edge has a triangle on both sides")
         .def_ro("border_edges", &MeshReport::border_edges, "edges met an odd number of times; 0: closed")
+        .def_ro("holes", &MeshReport::holes, "spanned ones")
+        .def_ro("spanning", &MeshReport::spanning, "triangles that span them: not in the file, numbered after its own")
         .def_ro("manifold", &MeshReport::manifold, "no edge has more than two triangles, no vertex more than one fan")
         .def_ro("oriented", &MeshReport::oriented, "across every shared edge the two triangles wind the same way")
         .def_ro("self_intersecting", &MeshReport::self_intersecting,

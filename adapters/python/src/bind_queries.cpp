@@ -110,6 +110,36 @@ nb::tuple closest_points(const Shape& shape, const Matrices& matrices, const Poi
     return nearest.take();
 }
 
+nb::tuple signed_distances(const Shape& shape, const Matrices& matrices, const Points& given, std::uint32_t threads) {
+    const std::vector<Pose> poses = poses_of(matrices);
+    const std::vector<Vec3> points = points_of(given);
+    const std::size_t n = items_of({{"points", points.size()}, {"poses", poses.size()}});
+    LengthColumn distance(n);
+    VectorColumn point(n), gradient(n);
+    IndexColumn triangle(n);
+    const auto set = [&](std::size_t i, const SignedDistance& found) {
+        distance.set(i, found.distance);
+        point.set(i, found.point);
+        gradient.set(i, found.gradient);
+        triangle.set_triangle(i, found.triangle);
+    };
+    if (poses.size() == 1 && points.size() == n) { // neighbours share work
+        WithoutGil without_gil;
+        constexpr std::size_t block = 1 << 18;
+        for (std::size_t begin = 0; begin < n && !is_ending(); begin += block) {
+            const auto part = std::span(points).subspan(begin, std::min(block, n - begin));
+            const std::vector<SignedDistance> found = signed_distance(shape, poses[0], part, threads);
+            for (std::size_t i = 0; i < found.size(); ++i) set(begin + i, found[i]);
+            without_gil.check_signals();
+        }
+    } else {
+        for_each_item(n, threads, "point", [&](std::size_t i) {
+            set(i, signed_distance(shape, of_item(poses, i), std::span(&of_item(points, i), 1), 1)[0]);
+        });
+    }
+    return nb::make_tuple(distance.take(), point.take(), triangle.take(), gradient.take());
+}
+
 /// Rays at a shape; what is there once counts for all.
 struct Rays {
     std::vector<Pose> poses;
@@ -192,6 +222,7 @@ void bind_queries(nb::module_& m) {
     m.def("common_points", &common_points, "pairs"_a);
     m.def("distances", &distances, "pairs"_a, "max"_a);
     m.def("closest_points", &closest_points, "shape"_a, "poses"_a, "points"_a, "max"_a, "threads"_a);
+    m.def("signed_distances", &signed_distances, "shape"_a, "poses"_a, "points"_a, "threads"_a);
     m.def("ray_hits", &ray_hits, "shape"_a, "poses"_a, "origins"_a, "directions"_a, "max"_a, "threads"_a);
     m.def("rays_meet", &rays_meet, "shape"_a, "poses"_a, "origins"_a, "directions"_a, "max"_a, "threads"_a);
     m.def("contains", &contains_all, "shape"_a, "poses"_a, "points"_a, "threads"_a);

@@ -23,6 +23,13 @@ Nesting nesting_from(std::string_view word) {
     throw InputError("nesting \"" + std::string(word) + "\" is not known; give as_wound, cavities or solids");
 }
 
+Holes holes_from(std::string_view word) {
+    if (word == "of_solids") return Holes::of_solids;
+    if (word == "of_all") return Holes::of_all;
+    if (word == "none") return Holes::none;
+    throw InputError("holes \"" + std::string(word) + "\" is not known; give of_solids, of_all or none");
+}
+
 // Arrays show the shape's own memory and keep the shape alive.
 template <typename Number, std::size_t Columns, auto Get>
 ReadOnlyArray view(nb::handle_t<Shape> self) {
@@ -66,13 +73,15 @@ void bind_shape(nb::module_& m) {
         });
     m.def(
         "make_shape",
-        [](const Mesh& mesh, bool repair, const std::string& nesting, std::uint32_t threads) {
-            const Nesting wanted = nesting_from(nesting);
+        [](const Mesh& mesh, bool repair, const std::string& nesting, const std::string& holes, std::uint32_t threads) {
+            const PrepareOptions options{.repair = repair ? Repair::allowed : Repair::as_is,
+                                         .nesting = nesting_from(nesting),
+                                         .holes = holes_from(holes),
+                                         .threads = threads};
             const WithoutGil without_gil;
-            return std::const_pointer_cast<Shape>(Shape::make(
-                prepare_mesh(mesh, repair ? Repair::allowed : Repair::as_is, wanted, Check::full, threads), threads));
+            return std::const_pointer_cast<Shape>(Shape::make(prepare_mesh(mesh, options), threads));
         },
-        "mesh"_a, "repair"_a, "nesting"_a, "threads"_a);
+        "mesh"_a, "repair"_a, "nesting"_a, "holes"_a, "threads"_a);
 }
 
 } // namespace raycontact::python

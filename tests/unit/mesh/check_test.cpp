@@ -14,7 +14,7 @@ namespace {
 using namespace test;
 
 std::uint32_t outward_once_prepared(const Mesh& mesh, Check check) {
-    const auto shape = Shape::make(prepare_mesh(mesh, Repair::allowed, Nesting::as_wound, check));
+    const auto shape = Shape::make(prepare_mesh(mesh, {.check = check}));
     EXPECT_EQ(shape->data().header.outward != 0, check == Check::full && shape->report().outward);
     shape->prepare();
     return accelerators_of(*shape)->header.outward;
@@ -23,7 +23,7 @@ std::uint32_t outward_once_prepared(const Mesh& mesh, Check check) {
 TEST(Check, TopologyIsTheSame) {
     const Mesh mesh = torus(24, 12, 1, 0.3);
     const MeshReport full = prepare_mesh(mesh).report;
-    const MeshReport quick = prepare_mesh(mesh, Repair::allowed, Nesting::as_wound, Check::topology).report;
+    const MeshReport quick = prepare_mesh(mesh, {.check = Check::topology}).report;
     EXPECT_TRUE(full.checked && full.outward);
     EXPECT_FALSE(quick.checked || quick.outward || quick.self_intersecting);
     EXPECT_TRUE(quick.closed && quick.manifold && quick.oriented);
@@ -45,7 +45,7 @@ TEST(Check, WindingsAreMendedAllTheSame) {
     for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
     std::swap(mesh.triangles[7][1], mesh.triangles[7][2]);
     const PreparedMesh full = prepare_mesh(mesh);
-    const PreparedMesh quick = prepare_mesh(mesh, Repair::allowed, Nesting::as_wound, Check::topology);
+    const PreparedMesh quick = prepare_mesh(mesh, {.check = Check::topology});
     EXPECT_EQ(full.triangles, quick.triangles);
     EXPECT_EQ(full.report.repairs, quick.report.repairs);
     EXPECT_GT(quick.report.volume, 0);

@@ -95,7 +95,7 @@ TEST(LoadGltf, MirroringNodeKeepsFrontsOutside) {
     const std::string nodes = R"([{"mesh":0,"matrix":[-1,0,0,0, 0,1,0,0, 0,0,1,0, 5,0,0,1]}])";
     const Mesh mesh = load_mesh(folder.write("m.glb", glb(gltf_json(box(), nodes, ""), gltf_buffer(box()))));
     EXPECT_EQ(mesh.vertices[1], (Vec3{4, 0, 0}));
-    const MeshReport report = prepare_mesh(mesh, Repair::as_is).report;
+    const MeshReport report = prepare_mesh(mesh, {.repair = Repair::as_is}).report;
     EXPECT_TRUE(report.outward);
     EXPECT_NEAR(report.volume, 1, 1e-15);
 }

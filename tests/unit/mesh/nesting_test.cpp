@@ -35,7 +35,7 @@ TEST(Nesting, CavityStays) {
 }
 
 PreparedMesh prepared(std::initializer_list<bool> outward, Nesting nesting) {
-    return prepare_mesh(nested(outward), Repair::allowed, nesting);
+    return prepare_mesh(nested(outward), {.nesting = nesting});
 }
 
 TEST(Nesting, PartsInPartsStayAsTheFileHasThem) {
@@ -89,19 +89,20 @@ TEST(Nesting, ADegenerateTriangleDoesNotHideThatAPartIsInside) {
         mesh.vertices.push_back({9, 5.0 + k, 9});
         mesh.triangles.push_back({13, 15, static_cast<std::uint32_t>(mesh.vertices.size() - 1)});
     }
-    const MeshReport report = prepare_mesh(mesh, Repair::allowed, Nesting::cavities).report;
+    const MeshReport report = prepare_mesh(mesh, {.nesting = Nesting::cavities}).report;
     EXPECT_TRUE(report.closed);
     EXPECT_NEAR(report.volume, 1000 - 512, 1e-9);
 }
 
 TEST(Nesting, AsIsChangesNothingAndSaysSo) {
     const Mesh mesh = nested({false});
-    const PreparedMesh prepared = prepare_mesh(mesh, Repair::as_is);
+    const PreparedMesh prepared = prepare_mesh(mesh, {.repair = Repair::as_is});
     EXPECT_EQ(prepared.triangles, mesh.triangles);
     EXPECT_TRUE(prepared.report.closed && prepared.report.oriented);
     EXPECT_FALSE(prepared.report.outward);
     EXPECT_NEAR(prepared.report.volume, -1000, 1e-9);
-    EXPECT_FALSE(prepare_mesh(nested({true, true}), Repair::as_is).report.outward); // winding number 2 inside
+    EXPECT_FALSE(
+        prepare_mesh(nested({true, true}), {.repair = Repair::as_is}).report.outward); // winding number 2 inside
 }
 
 TEST(Nesting, BesideIsNotInside) {
@@ -165,7 +166,7 @@ TEST(Nesting, ManySolidsInAShell) {
     for (int i = 0; i < 6; ++i) {
         for (int k = 0; k < 6; ++k) append_box(mesh, {2.0 + i, 2.0 + k, 3}, {2.7 + i, 2.7 + k, 4}, (i + k) % 2 == 0);
     }
-    const MeshReport report = prepare_mesh(mesh, Repair::allowed, Nesting::cavities).report;
+    const MeshReport report = prepare_mesh(mesh, {.nesting = Nesting::cavities}).report;
     EXPECT_EQ(report.repairs, Words{"turned 18 components of 38 whose winding contradicts its nesting"});
     EXPECT_TRUE(report.outward);
     EXPECT_EQ(report.components, 38u);

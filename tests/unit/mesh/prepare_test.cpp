@@ -69,7 +69,7 @@ TEST(Prepare, ASolidThatIsThereTwiceBackToBackIsOne) {
     EXPECT_EQ(report.triangles, once.triangles);
     EXPECT_DOUBLE_EQ(report.volume, once.volume);
     EXPECT_EQ(report.repairs, (std::vector<std::string>{"dropped 192 triangles back to back with another"}));
-    EXPECT_EQ(prepare_mesh(mesh, Repair::as_is).report.triangles, 384u);
+    EXPECT_EQ(prepare_mesh(mesh, {.repair = Repair::as_is}).report.triangles, 384u);
     // A sheet with two sides has no inside either way; it stays. So do the two halves of a lens that share a disc.
     Mesh sheet{"sheet", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}, {2, 1, 0}, {3, 2, 0}}};
     EXPECT_EQ(prepare_mesh(sheet).report.triangles, 4u);
@@ -94,7 +94,7 @@ TEST(Prepare, DropsDegenerateAndDuplicateTrianglesOnlyWhenAllowed) {
     EXPECT_EQ(prepared.triangle_index.front(), 1u);
     EXPECT_TRUE(prepared.report.outward);
 
-    const PreparedMesh as_is = prepare_mesh(mesh, Repair::as_is);
+    const PreparedMesh as_is = prepare_mesh(mesh, {.repair = Repair::as_is});
     EXPECT_EQ(as_is.report.triangles, 15u);
     EXPECT_TRUE(as_is.report.repairs.empty());
     EXPECT_FALSE(as_is.report.manifold);
@@ -128,7 +128,7 @@ Mesh lattice_torus(std::uint32_t around, std::uint32_t across) {
 TEST(Repair, ACornerOnASideDoesNotOpenAClosedMesh) {
     Mesh mesh = box();
     add_corner_on_edge(mesh, 4, 1);
-    ASSERT_TRUE(prepare_mesh(mesh, Repair::as_is).report.closed);
+    ASSERT_TRUE(prepare_mesh(mesh, {.repair = Repair::as_is}).report.closed);
     const PreparedMesh prepared = prepare_mesh(mesh);
     EXPECT_EQ(prepared.report.repairs,
               (std::vector<std::string>{"split 1 triangle at a corner of another, in place of 1 degenerate triangle"}));
@@ -144,7 +144,7 @@ TEST(Repair, SeveralCornersOnOneSide) {
     add_corner_on_edge(mesh, 4, 1);
     add_corner_on_edge(mesh, 4, 0); // once more in the half
     add_corner_on_edge(mesh, 4, 0);
-    ASSERT_TRUE(prepare_mesh(mesh, Repair::as_is).report.closed);
+    ASSERT_TRUE(prepare_mesh(mesh, {.repair = Repair::as_is}).report.closed);
     const MeshReport report = prepare_mesh(mesh).report;
     EXPECT_TRUE(report.closed && report.manifold && report.outward && !report.self_intersecting);
     EXPECT_DOUBLE_EQ(report.volume, 1);
@@ -155,7 +155,7 @@ TEST(Repair, ADegenerateTriangleThatNothingCanReplaceStays) {
     Mesh mesh{"m",
               {{0, 0, 0}, {4, 0, 0}, {0, 2, 0}, {0, 0, 2}, {1, 0, 0}, {2, 0, 0}},
               {{0, 2, 1}, {0, 4, 3}, {4, 5, 3}, {5, 1, 3}, {0, 3, 2}, {1, 2, 3}, {0, 1, 4}, {4, 1, 5}}};
-    ASSERT_TRUE(prepare_mesh(mesh, Repair::as_is).report.closed);
+    ASSERT_TRUE(prepare_mesh(mesh, {.repair = Repair::as_is}).report.closed);
     EXPECT_TRUE(prepare_mesh(mesh).report.closed);
     // Each edge of the degenerate one has three others: it cannot be exchanged for halves.
     Mesh pinched{"p", {{0, 0, 0}, {4, 0, 0}, {2, 0, 0}}, {{0, 1, 2}}};
@@ -167,7 +167,8 @@ TEST(Repair, ADegenerateTriangleThatNothingCanReplaceStays) {
             pinched.triangles.push_back({from, to, apex});
         }
     }
-    const MeshReport as_is = prepare_mesh(pinched, Repair::as_is).report, repaired = prepare_mesh(pinched).report;
+    const MeshReport as_is = prepare_mesh(pinched, {.repair = Repair::as_is}).report,
+                     repaired = prepare_mesh(pinched).report;
     EXPECT_EQ(repaired.triangles, 10u); // open elsewhere, but not here
     EXPECT_EQ(as_is.triangles, 10u);
 }
@@ -175,7 +176,7 @@ TEST(Repair, ADegenerateTriangleThatNothingCanReplaceStays) {
 TEST(Repair, DuplicatesGoOnlyWhereNothingOpens) {
     Mesh doubled = box();
     append(doubled, box());
-    ASSERT_TRUE(prepare_mesh(doubled, Repair::as_is).report.closed);
+    ASSERT_TRUE(prepare_mesh(doubled, {.repair = Repair::as_is}).report.closed);
     EXPECT_EQ(prepare_mesh(doubled).report.repairs, std::vector<std::string>{"dropped 12 duplicate triangles"});
     EXPECT_TRUE(prepare_mesh(doubled).report.outward);
 
@@ -188,7 +189,7 @@ TEST(Repair, DuplicatesGoOnlyWhereNothingOpens) {
     fin.vertices.push_back({2, 2, 2});
     fin.triangles.push_back({0, 1, 8});
     fin.triangles.push_back({0, 1, 8});
-    ASSERT_TRUE(prepare_mesh(fin, Repair::as_is).report.closed);
+    ASSERT_TRUE(prepare_mesh(fin, {.repair = Repair::as_is}).report.closed);
     EXPECT_TRUE(prepare_mesh(fin).report.closed);
 
     // Of an open mesh they go.
@@ -260,8 +261,9 @@ TEST(Repair, NeverOpensAClosedMesh) {
             }
         }
         std::shuffle(mesh.triangles.begin(), mesh.triangles.end(), random);
-        const MeshReport as_is = prepare_mesh(mesh, Repair::as_is).report;
-        const PreparedMesh once = prepare_mesh(mesh);
+        const MeshReport as_is = prepare_mesh(mesh, {.repair = Repair::as_is}).report;
+        const PrepareOptions no_holes{.holes = Holes::none};
+        const PreparedMesh once = prepare_mesh(mesh, no_holes);
         if (as_is.closed) {
             ++closed;
             EXPECT_TRUE(once.report.closed);
@@ -272,10 +274,10 @@ TEST(Repair, NeverOpensAClosedMesh) {
             EXPECT_TRUE(once.report.closed && once.report.outward && !once.report.self_intersecting);
             split += once.report.repairs.size();
         }
-        const PreparedMesh twice = prepare_mesh({"m", once.vertices, once.triangles});
+        const PreparedMesh twice = prepare_mesh({"m", once.vertices, once.triangles}, no_holes);
         EXPECT_EQ(twice.triangles, once.triangles);
         std::shuffle(mesh.triangles.begin(), mesh.triangles.end(), random);
-        EXPECT_EQ(prepare_mesh(mesh).report.closed, once.report.closed);
+        EXPECT_EQ(prepare_mesh(mesh, no_holes).report.closed, once.report.closed);
         if (seed % 16 == 0) Shape::make(once); // can cast and be met, whatever stays
     }
     EXPECT_GT(closed, 200u);
@@ -289,7 +291,7 @@ TEST(Prepare, OneTriangleTheOtherWay) {
     const PreparedMesh prepared = prepare_mesh(mesh);
     EXPECT_EQ(prepared.report.repairs, std::vector<std::string>{"turned 1 triangle to make windings agree"});
     EXPECT_TRUE(prepared.report.outward);
-    const MeshReport as_is = prepare_mesh(mesh, Repair::as_is).report;
+    const MeshReport as_is = prepare_mesh(mesh, {.repair = Repair::as_is}).report;
     EXPECT_TRUE(as_is.closed);
     EXPECT_FALSE(as_is.oriented);
     EXPECT_FALSE(as_is.outward);
@@ -348,7 +350,7 @@ TEST(Prepare, RefusesWhatIsNoMesh) {
     EXPECT_THROW(prepare_mesh({"m", {{0, 0, 0}, {1e10, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}), InputError);
     const Mesh line{"m", {{0, 0, 0}, {0.1, 0.1, 0.1}, {0.2, 0.2, 0.2}}, {{0, 1, 2}}};
     EXPECT_THROW(prepare_mesh(line), InputError);
-    EXPECT_THROW(prepare_mesh(line, Repair::as_is), InputError);
+    EXPECT_THROW(prepare_mesh(line, {.repair = Repair::as_is}), InputError);
 }
 
 /// Solids of all sorts: bumpy, nested, badly wound, with slivers and duplicates.
@@ -372,9 +374,10 @@ Mesh jumble(std::uint32_t seed) {
 TEST(Prepare, IsIdempotent) {
     for (std::uint32_t seed = 0; seed < 60; ++seed) {
         const Nesting nesting = static_cast<Nesting>(seed % 3);
-        const PreparedMesh once = prepare_mesh(jumble(seed), Repair::allowed, nesting);
+        const PreparedMesh once = prepare_mesh(jumble(seed), {.nesting = nesting, .holes = Holes::none});
         EXPECT_FALSE(once.report.repairs.empty());
-        const PreparedMesh twice = prepare_mesh({once.name, once.vertices, once.triangles}, Repair::allowed, nesting);
+        const PreparedMesh twice =
+            prepare_mesh({once.name, once.vertices, once.triangles}, {.nesting = nesting, .holes = Holes::none});
         EXPECT_EQ(twice.vertices, once.vertices);
         EXPECT_EQ(twice.triangles, once.triangles);
         EXPECT_TRUE(twice.report.repairs.empty());
@@ -399,7 +402,7 @@ TEST(Report, NumbersAreInFull) {
 
 TEST(Report, Verdicts) {
     const auto verdict = [](const Mesh& mesh, Repair repair = Repair::allowed) {
-        return verdict_of(prepare_mesh(mesh, repair).report);
+        return verdict_of(prepare_mesh(mesh, {.repair = repair}).report);
     };
     EXPECT_TRUE(verdict(box()).good);
     EXPECT_EQ(verdict(box()).text, "good for contacts");
@@ -410,12 +413,17 @@ TEST(Report, Verdicts) {
     };
     Mesh open = box();
     open.triangles.pop_back();
-    starts(verdict(open), "open: 3 border edges");
+    EXPECT_EQ(verdict(open).text, "good for contacts: a solid, of which 1 hole is spanned");
+    open.triangles.pop_back();
+    starts(verdict(open), "open: 4 border edges");
     Mesh crossed = box();
     append(crossed, box(), {0.5, 0.5, 0.5});
     starts(verdict(crossed), "self-intersecting: ");
-    append(open, crossed, {5, 0, 0});
-    starts(verdict(open), "open: 3 border edges");
+    Mesh large = box(10);
+    large.triangles.resize(10);
+    append(crossed, large, {5, 0, 0});
+    open = crossed;
+    starts(verdict(open), "open: 4 border edges");
     EXPECT_TRUE(verdict(open).text.ends_with("; also self-intersecting")) << verdict(open).text;
     Mesh turned = box();
     turn_over(turned);

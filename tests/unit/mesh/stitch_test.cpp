@@ -110,7 +110,7 @@ TEST(Stitch, QueriesAndContactsNameTheTrianglesOfTheFile) {
 }
 
 TEST(Stitch, NothingIsSplitAsItIs) {
-    const PreparedMesh mesh = prepare_mesh(box_with_cut_top(), Repair::as_is);
+    const PreparedMesh mesh = prepare_mesh(box_with_cut_top(), {.repair = Repair::as_is});
     EXPECT_EQ(mesh.report.triangles, 18u);
     EXPECT_FALSE(mesh.report.closed);
     EXPECT_TRUE(mesh.report.repairs.empty());
@@ -179,19 +179,20 @@ TEST(Stitch, FloatsLieBesideByTheirLastDigit) {
 TEST(Stitch, WhatLiesFartherOffIsNone) {
     Mesh mesh = box_with_cut_top();
     mesh.vertices[8].y = -1e-3;
-    EXPECT_FALSE(prepare_mesh(mesh).report.closed);
-    EXPECT_EQ(prepare_mesh(mesh).report.repairs, (std::vector<std::string>{"split 3 triangles at 3 T-junctions"}));
+    const MeshReport report = prepare_mesh(mesh, {.holes = Holes::none}).report;
+    EXPECT_FALSE(report.closed);
+    EXPECT_EQ(report.repairs, (std::vector<std::string>{"split 3 triangles at 3 T-junctions"}));
 }
 
 TEST(Stitch, ManyEdgesOnOneLineTakeNoLongerThanTheyAreMany) {
     const TimeLimit limit(20);
     Mesh mesh{"fan", {}, {}};
     for (std::uint32_t i = 0; i < 100'000; ++i) {
-        const double x = i;
+        const double x = 4.0 * i; // farther apart than the last digit
         for (const Vec3& v : {Vec3{-x - 1, 0, 0}, Vec3{x + 1, 0, 0}, Vec3{0, 1, x}}) mesh.vertices.push_back(v);
         mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
     }
-    const MeshReport report = prepare_mesh(mesh, Repair::allowed, Nesting::as_wound, Check::topology).report;
+    const MeshReport report = prepare_mesh(mesh, {.check = Check::topology}).report;
     ASSERT_EQ(report.repairs.size(), 1u);
     EXPECT_EQ(report.repairs[0], "left T-junctions as they are: too many vertices lie on borders of others");
     EXPECT_EQ(report.triangles, 100'000u);

@@ -53,7 +53,7 @@ TEST_F(Bunny, IsReducedToTheExactCountAndSound) {
         const auto model = reduced_bunny(file_, triangles, why_not_);
         ASSERT_TRUE(model) << why_not_;
         EXPECT_EQ(model->mesh.triangles.size(), triangles);
-        EXPECT_TRUE(sound(prepare_mesh(model->mesh, Repair::as_is).report));
+        EXPECT_TRUE(sound(prepare_mesh(model->mesh, {.repair = Repair::as_is}).report));
         EXPECT_FALSE(model->stand_in);
     }
 }
@@ -95,7 +95,7 @@ TEST_F(Bunny, SaysWhyNot) {
 TEST_F(Bunny, WithOrWithoutThePackageTheCountIsMet) {
     const Model model = scene_model("bunny", 902);
     EXPECT_EQ(model.mesh.triangles.size(), 902u);
-    EXPECT_TRUE(sound(prepare_mesh(model.mesh, Repair::as_is).report));
+    EXPECT_TRUE(sound(prepare_mesh(model.mesh, {.repair = Repair::as_is}).report));
     EXPECT_NE(model.source.find(model.stand_in ? "standing in for" : "Stanford bunny"), std::string::npos)
         << model.source;
 }

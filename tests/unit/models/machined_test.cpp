@@ -9,8 +9,8 @@ using namespace raycontact;
 
 TEST(Machined, BoltAndNutAreSoundAndDoNotTouch) {
     const scenes::Thread thread;
-    const auto bolt = Shape::make(prepare_mesh(scenes::threaded_bolt(thread), Repair::as_is));
-    const auto nut = Shape::make(prepare_mesh(scenes::threaded_nut(thread), Repair::as_is));
+    const auto bolt = Shape::make(prepare_mesh(scenes::threaded_bolt(thread), {.repair = Repair::as_is}));
+    const auto nut = Shape::make(prepare_mesh(scenes::threaded_nut(thread), {.repair = Repair::as_is}));
     for (const auto& shape : {bolt, nut}) {
         EXPECT_TRUE(scenes::sound(shape->report())) << to_text(shape->report());
         EXPECT_GT(shape->report().volume, 0);

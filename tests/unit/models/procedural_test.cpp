@@ -42,7 +42,7 @@ void expect_good(const char* kind, std::uint32_t triangles) {
     EXPECT_EQ(model.mesh.triangles.size(), triangles);
     EXPECT_FALSE(model.stand_in);
     EXPECT_NE(model.source.find(std::to_string(triangles) + " triangles"), std::string::npos);
-    const PreparedMesh prepared = prepare_mesh(model.mesh, Repair::as_is);
+    const PreparedMesh prepared = prepare_mesh(model.mesh, {.repair = Repair::as_is});
     const MeshReport& report = prepared.report;
     EXPECT_EQ(report.triangles, triangles);
     EXPECT_EQ(report.vertices, model.mesh.vertices.size()) << "two vertices in one place";

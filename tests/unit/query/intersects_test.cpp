@@ -52,7 +52,8 @@ TEST(Intersects, OneInsideTheOther) {
 TEST(Intersects, AHollowIsOutside) {
     Mesh mesh = box_mesh({1, 1, 1});
     append(mesh, turned_inside_out(box_mesh({0.5, 0.5, 0.5})));
-    const auto hollow = Shape::make(prepare_mesh(mesh, Repair::as_is)), small = Shape::make(box_mesh({0.1, 0.1, 0.1}));
+    const auto hollow = Shape::make(prepare_mesh(mesh, {.repair = Repair::as_is})),
+               small = Shape::make(box_mesh({0.1, 0.1, 0.1}));
     EXPECT_FALSE(both_ways(*hollow, *small, at(0.3, 0.2, 0.1)));
     EXPECT_TRUE(both_ways(*hollow, *small, at(0.7, 0.2, 0.1))) << "within the wall";
 }

@@ -103,7 +103,7 @@ TEST(Settings, TheLargestAndSmallestLengthsFindTheSameContacts) {
 TEST(Settings, MoreThreadsThanAnyoneNeedsAreRefused) {
     constexpr std::uint32_t too_many = 1025;
     const Mesh mesh = reference::box_mesh({0.5, 0.5, 0.5});
-    EXPECT_THROW(prepare_mesh(mesh, Repair::allowed, Nesting::as_wound, Check::full, too_many), InputError);
+    EXPECT_THROW(prepare_mesh(mesh, {.threads = too_many}), InputError);
     EXPECT_THROW(Shape::make(mesh, too_many), InputError);
     const auto box = Shape::make(mesh);
     EXPECT_THROW(box->prepare(too_many), InputError);
