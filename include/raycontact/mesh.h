@@ -110,11 +110,20 @@ enum class Holes {
     none,
 };
 
+/// What prepare_mesh() does about parts of one closed mesh that lie in each other or cross, where it may repair.
+enum class Overlaps {
+    /// They are one solid: triangles are cut where they cross, and the pieces dropped that have a winding number of 1
+    /// or more in front, or less than 1 behind.
+    unite,
+    leave,
+};
+
 /// How much of a mesh prepare_mesh looks at.
 enum class Check {
     full,
-    /// Neither self-intersections nor which way the whole winds, a third of what it takes to make a shape: for one that
-    /// is needed at once. Shape::prepare() looks for them, since the grids that it makes need them.
+    /// Of a mesh that is not united (Overlaps) neither self-intersections nor which way the whole winds, a third of what
+    /// it takes to make a shape: for one that is needed at once. Shape::prepare() looks for them, since the grids that
+    /// it makes need them.
     topology,
 };
 
@@ -134,6 +143,7 @@ struct PrepareOptions {
     Repair repair = Repair::allowed;
     Nesting nesting = Nesting::as_wound;
     Holes holes = Holes::of_solids;
+    Overlaps overlaps = Overlaps::unite;
     Check check = Check::full;
     std::uint32_t threads = 0; ///< 0: one per core; no bit depends on it
 };

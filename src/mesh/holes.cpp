@@ -76,6 +76,7 @@ public:
 
 private:
     static constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+    static constexpr std::size_t most_sides = 64; ///< at one vertex, of which the next is chosen; so no file takes long
     /// A vertex and the sides from there that no hole has yet.
     struct Place {
         std::uint32_t vertex;
@@ -106,7 +107,8 @@ private:
     std::size_t take_next(const std::vector<std::size_t>& path) {
         Place& place = places_[path.back()];
         std::size_t best = place.begin;
-        if (place.end - place.begin > 1 && path.size() > 1) {
+        const std::size_t sides = place.end - place.begin;
+        if (sides > 1 && sides <= most_sides && path.size() > 1) {
             const Vec3 &here = vertices_[place.vertex], &last = vertices_[places_[path[path.size() - 2]].vertex];
             const Vec3 back = last - here, aside = cross(back, place.normal);
             double least = std::numeric_limits<double>::infinity();
@@ -264,7 +266,7 @@ bool is_solid(const PreparedMesh& spanned, std::size_t first_spanning, const Mes
             answers[i] = broken;
             return;
         }
-        const std::optional<int> in_front = winding_in_front(chosen[i], point, spanned, tree);
+        const std::optional<int> in_front = winding_in_front(chosen[i], point, spanned, tree, std::span(&chosen[i], 1));
         if (in_front) answers[i] = *in_front + 1 >= 1 ? inner : outer; // not between faces that lie on each other
     });
     const auto count = [&](Answer which) { return std::size_t(std::ranges::count(answers, which)); };

@@ -52,10 +52,10 @@ Vec3 middle_of(std::uint32_t triangle, const PreparedMesh& mesh) {
     return (1.0 / 3) * (mesh.vertices[a] + mesh.vertices[b] + mesh.vertices[c]);
 }
 
-/// Finds all other triangles that a ray from a point of a triangle crosses in the space in front of it. Tries
+/// Finds all triangles but some that a ray from a point of a triangle crosses in the space in front of it. Tries
 /// directions until one is clear, by more than rounding, of every edge and of surface at its origin; false if none is.
 bool cast_from(std::uint32_t from, const Vec3& origin, const PreparedMesh& mesh, const MeshTree& tree,
-               std::vector<Crossing>& crossings) {
+               std::span<const std::uint32_t> without, std::vector<Crossing>& crossings) {
     const auto corners = [&](std::uint32_t t) {
         const auto [a, b, c] = mesh.triangles[t];
         return std::array{mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
@@ -73,7 +73,7 @@ bool cast_from(std::uint32_t from, const Vec3& origin, const PreparedMesh& mesh,
         crossings.clear();
         bool clear = true;
         tree.along_ray(origin, direction, [&](std::uint32_t t) {
-            if (t == from || !clear) return;
+            if (!clear || std::ranges::find(without, t) != without.end()) return;
             const auto [p, q, r] = corners(t);
             const int sign = cross_triangle(direction, p - origin, q - origin, r - origin, clear);
             if (sign != 0) crossings.push_back({t, sign});
@@ -115,7 +115,8 @@ std::size_t patches_around(std::uint32_t own, std::span<const std::uint32_t> fro
     std::vector<std::uint32_t> around;
     std::vector<Crossing> crossings;
     for (std::size_t k = 0; k < from.size(); ++k) {
-        if (!cast_from(from[k], middle_of(from[k], mesh), mesh, tree, crossings)) return 0; // not known: not nested
+        if (!cast_from(from[k], middle_of(from[k], mesh), mesh, tree, from.subspan(k, 1), crossings))
+            return 0; // not known: not nested
         std::map<std::uint32_t, std::size_t> times;
         for (const Crossing& crossing : crossings) ++times[patches.of[crossing.triangle]];
         if (k == 0) {
@@ -166,9 +167,9 @@ std::vector<char> patches_to_turn(const PreparedMesh& mesh, const Patches& patch
 }
 
 std::optional<int> winding_in_front(std::uint32_t triangle, const Vec3& point, const PreparedMesh& mesh,
-                                    const MeshTree& tree) {
+                                    const MeshTree& tree, std::span<const std::uint32_t> without) {
     std::vector<Crossing> crossings;
-    if (!cast_from(triangle, point, mesh, tree, crossings)) return std::nullopt;
+    if (!cast_from(triangle, point, mesh, tree, without, crossings)) return std::nullopt;
     int winding = 0;
     for (const Crossing& crossing : crossings) winding += crossing.sign;
     return winding;
@@ -191,7 +192,8 @@ bool winds_outward(const PreparedMesh& mesh, const Patches& patches, const MeshT
     }
     for (std::size_t p = 0; p < patches.list.size(); ++p) {
         if (area[p] == 0) continue; // degenerate triangles bound nothing
-        if (winding_in_front(largest[p], middle_of(largest[p], mesh), mesh, tree) != 0) return false;
+        if (winding_in_front(largest[p], middle_of(largest[p], mesh), mesh, tree, std::span(&largest[p], 1)) != 0)
+            return false;
     }
     return true;
 }

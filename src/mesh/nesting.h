@@ -7,6 +7,7 @@
 #include "mesh/patches.h"
 
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace raycontact {
@@ -17,9 +18,10 @@ namespace raycontact {
 std::vector<char> patches_to_turn(const PreparedMesh& mesh, const Patches& patches, const LazyTree& tree,
                                   Nesting nesting);
 
-/// The winding number of a closed mesh right in front of a point of a triangle; nothing where rounding could change it.
+/// The winding number of a closed mesh in front of a point of a triangle, and of others that lie on it there,
+/// `without`, among which it is; nothing where rounding could change it.
 std::optional<int> winding_in_front(std::uint32_t triangle, const Vec3& point, const PreparedMesh& mesh,
-                                    const MeshTree& tree);
+                                    const MeshTree& tree, std::span<const std::uint32_t> without);
 
 /// Whether the winding number of a closed, oriented mesh without self-intersections is 0 outside and 1 inside
 /// everywhere.

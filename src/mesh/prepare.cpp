@@ -11,6 +11,7 @@
 #include "mesh/nesting.h"
 #include "mesh/predicates.h"
 #include "mesh/stitch.h"
+#include "mesh/unite.h"
 #include "number_text.h"
 
 #include <algorithm>
@@ -208,6 +209,45 @@ std::optional<Surface> span_holes(PreparedMesh& prepared, std::span<const HalfEd
     return surface;
 }
 
+/// Replaces a mesh by the union of its solids; reports that, the first time.
+void take(PreparedMesh& prepared, const United& united, bool first) {
+    std::vector<Vec3> places(united.vertices);
+    for (Vec3& p : places) p = p + Vec3{};
+    const std::vector<std::uint32_t> lowest = lowest_equal(places);
+    constexpr std::uint32_t none = 0xffffffffu;
+    std::vector<std::uint32_t> number(places.size(), none);
+    std::vector<Triangle> triangles;
+    std::vector<std::uint32_t> triangle_index;
+    for (std::size_t i = 0; i < united.triangles.size(); ++i) {
+        const auto [a, b, c] = united.triangles[i];
+        const Triangle t{lowest[a], lowest[b], lowest[c]};
+        if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue; // rounded away
+        for (const std::uint32_t v : t) number[v] = 0;
+        triangles.push_back(t);
+        triangle_index.push_back(prepared.triangle_index[united.of[i]]);
+    }
+    const std::size_t given = prepared.vertices.size(), file_vertices = prepared.report.file_vertices;
+    std::size_t next = std::max<std::size_t>(file_vertices, prepared.vertex_index.back() + std::size_t{1});
+    std::vector<Vec3> vertices;
+    std::vector<std::uint32_t> vertex_index;
+    for (std::size_t v = 0; v < number.size(); ++v) {
+        if (number[v] == none) continue;
+        number[v] = static_cast<std::uint32_t>(vertices.size());
+        vertices.push_back(united.vertices[v]);
+        vertex_index.push_back(v < given ? prepared.vertex_index[v] : static_cast<std::uint32_t>(next++));
+    }
+    for (Triangle& t : triangles)
+        for (std::uint32_t& v : t) v = number[v];
+    prepared.vertices = std::move(vertices);
+    prepared.vertex_index = std::move(vertex_index);
+    prepared.triangles = std::move(triangles);
+    prepared.triangle_index = std::move(triangle_index);
+    std::string text = "united parts that lie in each other: split " + counted(united.split, "triangle") + ", dropped "
+                       + counted(united.buried, "buried one");
+    if (next > file_vertices) text += "; vertices from " + std::to_string(file_vertices) + " on are where they cross";
+    if (first) prepared.report.repairs.push_back(text);
+}
+
 } // namespace
 
 PreparedMesh prepare_mesh(const Mesh& mesh, const PrepareOptions& options) {
@@ -228,7 +268,7 @@ PreparedMesh prepare_mesh(const Mesh& mesh, const PrepareOptions& options) {
         if (stitch(prepared, edges, within, executor)) edges = sorted_half_edges(prepared.triangles);
     }
 
-    const std::vector<Vec3> exact = all_snapped(prepared.vertices);
+    std::vector<Vec3> exact = all_snapped(prepared.vertices);
     std::optional<Surface> surface(std::in_place, prepared.triangles, exact, executor);
     if (surface->is_empty()) throw InputError(name + ": no triangle has an area");
     check_size(prepared.vertices, name);
@@ -245,7 +285,30 @@ PreparedMesh prepare_mesh(const Mesh& mesh, const PrepareOptions& options) {
         }
     }
     fill_report(prepared, edges);
-    prepared.report.checked = false;
+    prepared.report.checked = options.check == Check::full;
+    if (repair && options.overlaps == Overlaps::unite && prepared.report.closed && prepared.report.oriented) {
+        // What is rounded may cross itself again: then what is nearer than doubles can tell is drawn together.
+        const double near = 1e-12 * length(prepared.report.box_max - prepared.report.box_min);
+        for (int round = 0; round < 5; ++round) {
+            const United united = unite(prepared, patches, exact, surface->tree(), round > 0 ? near : 0, executor);
+            if (united.done == United::Done::nothing) {
+                prepared.report.outward = prepared.report.checked = true;
+                return prepared;
+            }
+            if (united.done == United::Done::empty) break;
+            if (united.done == United::Done::given_up) {
+                prepared.report.repairs.emplace_back("left parts that cross as they are: too many, or too near");
+                break;
+            }
+            take(prepared, united, round == 0);
+            exact = all_snapped(prepared.vertices);
+            surface.emplace(prepared.triangles, exact, executor);
+            if (surface->is_empty()) throw InputError(name + ": nothing is left of parts that lie in each other");
+            edges = sorted_half_edges(prepared.triangles);
+            patches = find_patches(prepared.triangles, edges);
+            fill_report(prepared, edges);
+        }
+    }
     if (options.check == Check::full) check_surface(prepared, patches, exact, surface->tree(), executor);
     return prepared;
 }

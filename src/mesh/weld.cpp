@@ -222,7 +222,9 @@ std::optional<double> closing_weld(const PreparedMesh& mesh) {
         if (length < std::max(1e-6 * most, step) || !closes(border, joined(mesh.vertices, ends, length))) continue;
         // Vertices away from the border may have a say, too.
         const Mesh welded = weld_mesh({mesh.name, mesh.vertices, triangles}, length);
-        if (prepare_mesh(welded, {.holes = Holes::none, .check = Check::topology}).report.closed) return length;
+        if (prepare_mesh(welded, {.holes = Holes::none, .overlaps = Overlaps::leave, .check = Check::topology})
+                .report.closed)
+            return length;
     }
     return std::nullopt;
 }

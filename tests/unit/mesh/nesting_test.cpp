@@ -35,7 +35,7 @@ TEST(Nesting, CavityStays) {
 }
 
 PreparedMesh prepared(std::initializer_list<bool> outward, Nesting nesting) {
-    return prepare_mesh(nested(outward), {.nesting = nesting});
+    return prepare_mesh(nested(outward), {.nesting = nesting, .overlaps = Overlaps::leave});
 }
 
 TEST(Nesting, PartsInPartsStayAsTheFileHasThem) {
@@ -119,7 +119,7 @@ TEST(Nesting, BesideIsNotInside) {
 TEST(Nesting, OverlappingSolidsAreNotNested) {
     Mesh mesh = nested({true});
     append_box(mesh, {5, 5, 5}, {12, 8, 8});
-    const MeshReport report = prepare_mesh(mesh).report;
+    const MeshReport report = prepare_mesh(mesh, {.overlaps = Overlaps::leave}).report;
     EXPECT_TRUE(report.repairs.empty());
     EXPECT_TRUE(report.self_intersecting);
     EXPECT_FALSE(report.outward);

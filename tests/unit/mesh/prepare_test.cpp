@@ -70,13 +70,14 @@ TEST(Prepare, ASolidThatIsThereTwiceBackToBackIsOne) {
     EXPECT_DOUBLE_EQ(report.volume, once.volume);
     EXPECT_EQ(report.repairs, (std::vector<std::string>{"dropped 192 triangles back to back with another"}));
     EXPECT_EQ(prepare_mesh(mesh, {.repair = Repair::as_is}).report.triangles, 384u);
-    // A sheet with two sides has no inside either way; it stays. So do the two halves of a lens that share a disc.
+    // A sheet with two sides has no inside either way; it stays. The two halves of a lens that share a disc are one.
     Mesh sheet{"sheet", {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}, {2, 1, 0}, {3, 2, 0}}};
     EXPECT_EQ(prepare_mesh(sheet).report.triangles, 4u);
     Mesh halves{"halves",
                 {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -1}},
                 {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {0, 1, 2}, {1, 0, 4}, {2, 1, 4}, {0, 2, 4}}};
-    EXPECT_EQ(prepare_mesh(halves).report.triangles, 8u);
+    EXPECT_EQ(prepare_mesh(halves).report.triangles, 6u);
+    EXPECT_EQ(prepare_mesh(halves, {.overlaps = Overlaps::leave}).report.triangles, 8u);
 }
 
 TEST(Prepare, DropsDegenerateAndDuplicateTrianglesOnlyWhenAllowed) {
@@ -402,7 +403,7 @@ TEST(Report, NumbersAreInFull) {
 
 TEST(Report, Verdicts) {
     const auto verdict = [](const Mesh& mesh, Repair repair = Repair::allowed) {
-        return verdict_of(prepare_mesh(mesh, {.repair = repair}).report);
+        return verdict_of(prepare_mesh(mesh, {.repair = repair, .overlaps = Overlaps::leave}).report);
     };
     EXPECT_TRUE(verdict(box()).good);
     EXPECT_EQ(verdict(box()).text, "good for contacts");

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <raycontact/mesh.h>
+
+#include "executor/executor.h"
+#include "mesh/mesh_tree.h"
+#include "mesh/patches.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace raycontact {
+
+/// What was done about parts of a mesh that lie in each other.
+struct United {
+    enum class Done {
+        nothing, ///< it does not cross itself, and its winding number is 0 in front and 1 behind everywhere
+        union_,
+        empty,    ///< nothing would be left: what winds about nothing, as a sheet with two sides
+        given_up, ///< it was too much work, or rounding decided
+    };
+    Done done = Done::nothing;
+    std::vector<Vec3> vertices{};      ///< those given, then those where triangles cross
+    std::vector<Triangle> triangles{}; ///< the surface of what has a winding number of at least 1
+    std::vector<std::uint32_t> of{};   ///< the triangle that each one is, or is a piece of; rising
+    std::size_t split = 0;             ///< triangles
+    std::size_t buried = 0;            ///< triangles that are gone as a whole
+};
+
+/// The union of the solids that a mesh is made of: cuts triangles where they cross each other, and leaves out the
+/// pieces that do not have a winding number of 0 or less in front and of 1 or more behind. Of pieces that lie on each
+/// other one stays. Where triangles cross is found exactly, and then rounded to double, or is a vertex that is nearer
+/// than `tolerance` metres: so the union may cross itself again, by a rounding. The mesh must be closed and wound alike
+/// everywhere; patches: its own; exact: its vertices, snapped(); tree: over its triangles that have an area.
+United unite(const PreparedMesh& mesh, const Patches& patches, std::span<const Vec3> exact, const MeshTree& tree,
+             double tolerance, Executor& executor);
+
+} // namespace raycontact
