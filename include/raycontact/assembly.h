@@ -26,10 +26,11 @@ struct AssemblyPart {
 
 /// Of a glTF file each node of its scene that places a mesh, in node order; an instance of a node is "NODE[3]". Of a
 /// 3MF file each object with a mesh as often as its build places it. Of an OBJ file its objects (`o`) if there are
-/// several, else its groups (`g`); of an STL file its solids; of any other file its one mesh. Groups and solids
-/// that are patches of one surface, open where they meet, are one part. Indices of a part's vertices and triangles
-/// begin at 0; those of groups are numbered as their triangles come to them. left_out: becomes what was left out or
-/// mended, in words that name it. Throws InputError as load_mesh().
+/// several, else its groups (`g`); of an STL file its solids; of any other file its one mesh. Objects, groups and
+/// solids that are patches of one surface, open along an edge that they share, are one part; so what is closed by
+/// itself is a part of its own. Indices of a part's vertices and
+/// triangles begin at 0; those of objects, groups and solids are numbered as their triangles come to them. left_out:
+/// becomes what was left out or mended, in words that name it. Throws InputError as load_mesh().
 RAYCONTACT_API std::vector<AssemblyPart> load_assembly(const std::filesystem::path& file,
                                                        std::vector<std::string>* left_out = nullptr);
 

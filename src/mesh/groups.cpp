@@ -4,6 +4,8 @@
 #include "mesh/adjacency.h"
 #include "mesh/disjoint_sets.h"
 #include "mesh/lowest_equal.h"
+#include "mesh/odd_times.h"
+#include "mesh/split.h"
 #include "mesh/vector.h"
 
 #include <algorithm>
@@ -24,18 +26,11 @@ void join_cut(const Mesh& mesh, std::span<const std::uint32_t> group_of, Disjoin
     std::vector<Triangle> welded;
     welded.reserve(mesh.triangles.size());
     for (const auto& [a, b, c] : mesh.triangles) welded.push_back({lowest[a], lowest[b], lowest[c]});
-    std::vector<std::uint32_t> found, open;
+    std::vector<std::uint32_t> open;
     for_each_edge(sorted_half_edges(welded), [&](std::span<const HalfEdge> sides) {
-        found.clear();
         open.clear();
-        for (const HalfEdge& side : sides) found.push_back(group_of[side.triangle()]);
-        std::ranges::sort(found);
-        for (const std::uint32_t group : found) {
-            if (!open.empty() && open.back() == group)
-                open.pop_back();
-            else
-                open.push_back(group);
-        }
+        for (const HalfEdge& side : sides) open.push_back(group_of[side.triangle()]);
+        keep_odd_times(open);
         for (const std::uint32_t group : open) sets.join(open[0], group);
     });
 }
@@ -61,7 +56,7 @@ std::size_t Groups::names(std::size_t triangles) const {
     return different.size();
 }
 
-std::vector<AssemblyPart> Groups::parts(Mesh&& mesh, bool join, std::vector<std::string>& notes) const {
+std::vector<AssemblyPart> Groups::parts(Mesh&& mesh, std::vector<std::string>& notes) const {
     notes.insert(notes.end(), mesh.repairs.begin(), mesh.repairs.end());
     // Numbers of the names by their first triangles.
     std::vector<std::string> names;
@@ -87,7 +82,7 @@ std::vector<AssemblyPart> Groups::parts(Mesh&& mesh, bool join, std::vector<std:
 
     DisjointSets sets;
     sets.reset(names.size());
-    if (join && names.size() > 1) join_cut(mesh, group_of, sets);
+    if (names.size() > 1) join_cut(mesh, group_of, sets);
     std::vector<std::vector<std::string>> joined(names.size()); // names of each set, at its lowest number
     for (std::uint32_t g = 0; g < names.size(); ++g) joined[sets.of(g)].push_back(names[g]);
     const auto sets_left = std::ranges::count_if(joined, [](const auto& list) { return !list.empty(); });
@@ -99,38 +94,15 @@ std::vector<AssemblyPart> Groups::parts(Mesh&& mesh, bool join, std::vector<std:
         return {{std::move(name), std::make_shared<const Mesh>(std::move(mesh)), {}}};
     }
 
-    std::vector<std::shared_ptr<Mesh>> meshes(names.size());
+    for (std::uint32_t& g : group_of) g = sets.of(g);
+    std::vector<AssemblyPart> parts;
+    std::vector<Mesh> meshes = split_mesh(mesh, group_of, names.size());
     for (std::uint32_t g = 0; g < names.size(); ++g) {
         if (joined[g].empty()) continue;
-        meshes[g] = std::make_shared<Mesh>();
-        meshes[g]->name = names[g];
-        if (joined[g].size() > 1) meshes[g]->name += " and " + std::to_string(joined[g].size() - 1) + " more";
+        meshes[g].name = names[g];
+        if (joined[g].size() > 1) meshes[g].name += " and " + std::to_string(joined[g].size() - 1) + " more";
+        parts.push_back({meshes[g].name, std::make_shared<const Mesh>(std::move(meshes[g])), {}});
     }
-    constexpr std::uint32_t none = 0xffffffffu;
-    // The triangles of each part together, so that each vertex needs one number at a time.
-    std::vector<std::uint32_t> order(mesh.triangles.size()), number(mesh.vertices.size(), none), owner(number);
-    for (std::uint32_t t = 0; t < order.size(); ++t) {
-        order[t] = t;
-        group_of[t] = sets.of(group_of[t]);
-    }
-    std::ranges::stable_sort(order, {}, [&](std::uint32_t t) { return group_of[t]; });
-    for (const std::uint32_t t : order) {
-        const std::uint32_t g = group_of[t];
-        Triangle own{};
-        for (std::size_t k = 0; k < 3; ++k) {
-            const std::uint32_t v = mesh.triangles[t][k];
-            if (owner[v] != g) {
-                owner[v] = g;
-                number[v] = static_cast<std::uint32_t>(meshes[g]->vertices.size());
-                meshes[g]->vertices.push_back(mesh.vertices[v]);
-            }
-            own[k] = number[v];
-        }
-        meshes[g]->triangles.push_back(own);
-    }
-    std::vector<AssemblyPart> parts;
-    for (const auto& own : meshes)
-        if (own) parts.push_back({own->name, own, {}});
     return parts;
 }
 

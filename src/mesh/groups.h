@@ -22,10 +22,10 @@ public:
     std::size_t names(std::size_t triangles) const;
 
     /// A part for each name, in the order of their first triangles; or the whole mesh as the one part that there is,
-    /// with the mesh's own name. Names that share a cut surface, as patches of one solid do, are one part if `join`:
-    /// where an edge is open in one of them and open in another, too. Appends to `notes` the repairs of the mesh, and
-    /// what was joined or is empty.
-    std::vector<AssemblyPart> parts(Mesh&& mesh, bool join, std::vector<std::string>& notes) const;
+    /// with the mesh's own name. Names that share a border, as patches of one solid do, are one part: where an edge is
+    /// open in one of them and open in another, too. What is closed by itself has none, so it is a part of its own.
+    /// Appends to `notes` the repairs of the mesh, and what was joined or is empty.
+    std::vector<AssemblyPart> parts(Mesh&& mesh, std::vector<std::string>& notes) const;
 
 private:
     std::vector<std::pair<std::string, std::size_t>> runs_;

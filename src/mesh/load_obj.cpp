@@ -71,8 +71,7 @@ public:
 
     /// Objects where there are several, else groups.
     std::vector<AssemblyPart> parts(Mesh&& mesh, std::vector<std::string>& notes) const {
-        const bool by_objects = objects_.names(mesh.triangles.size()) > 1;
-        return (by_objects ? objects_ : groups_).parts(std::move(mesh), !by_objects, notes);
+        return (objects_.names(mesh.triangles.size()) > 1 ? objects_ : groups_).parts(std::move(mesh), notes);
     }
 
 private:

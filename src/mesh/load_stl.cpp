@@ -239,7 +239,7 @@ Mesh read_stl(const InputFile& file) {
 std::vector<AssemblyPart> read_stl_parts(const InputFile& file, std::vector<std::string>& notes) {
     auto [mesh, solids] = read_solids(file);
     mesh.name = file.name();
-    return solids.parts(std::move(mesh), true, notes);
+    return solids.parts(std::move(mesh), notes);
 }
 
 } // namespace raycontact

@@ -73,7 +73,7 @@ TEST(Corpus, Obj) {
     expect(
         "obj",
         {
-            {"as_written", "tetrahedron: 3, second: 1; left out 1 vertex that is not finite and that no triangle uses; "
+            {"as_written", "m.obj: 4; left out 1 vertex that is not finite and that no triangle uses; "
                            "left out 1 face of two corners; left out 2 points (p); left out 1 line (l); left out 2 "
                            "free-form elements (curv, surf); left out 1 call of other files or commands; left out 3 "
                            "padding bytes at the end; left out what has no triangles: 'empty'"},

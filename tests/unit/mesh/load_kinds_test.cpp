@@ -167,18 +167,15 @@ TEST(LoadKinds, ObjObjectsElseGroupsAreParts) {
         const auto parts = parts_of(grouped(box(), 1, {{0, kind + " the first"}}) + kind + "\n" + kind + " empty\n"
                                         + grouped(box(2), 9, {{0, kind + " b"}, {5, kind + " c"}, {7, kind + " b"}}),
                                     &left_out);
-        // Group c is a hole in b: open in both. An object is one whatever it shares.
-        ASSERT_EQ(parts.size(), kind == "o" ? 3u : 2u);
+        // c is a hole in b: open in both.
+        ASSERT_EQ(parts.size(), 2u);
         EXPECT_EQ(parts[0].name, "the first");
         EXPECT_EQ(prepare_mesh(*parts[0].mesh).report.volume, 1);
-        EXPECT_EQ(parts[1].name, kind == "o" ? "b" : "b and 1 more");
-        EXPECT_EQ(parts[1].mesh->triangles.size(), kind == "o" ? 10u : 12u);
-        EXPECT_EQ(left_out[0], "left out what has no triangles: 'empty'");
-        EXPECT_EQ(left_out.size(), kind == "o" ? 1u : 2u);
-        if (kind == "g") {
-            EXPECT_EQ(left_out[1], "joined patches of one surface to a part: 'b', 'c'");
-            EXPECT_EQ(prepare_mesh(*parts[1].mesh).report.volume, 8);
-        }
+        EXPECT_EQ(parts[1].name, "b and 1 more");
+        EXPECT_EQ(parts[1].mesh->triangles.size(), 12u);
+        EXPECT_EQ(prepare_mesh(*parts[1].mesh).report.volume, 8);
+        EXPECT_EQ(left_out, (Texts{"left out what has no triangles: 'empty'",
+                                   "joined patches of one surface to a part: 'b', 'c'"}));
     }
     // Faces before any name, and groups in one object.
     const auto two = parts_of("o all\n" + grouped(box(), 1, {}) + grouped(box(2), 9, {{0, "g second"}}));
@@ -189,6 +186,49 @@ TEST(LoadKinds, ObjObjectsElseGroupsAreParts) {
     const auto one = parts_of(grouped(box(), 1, {{0, "g red"}, {6, "g blue"}}));
     ASSERT_EQ(one.size(), 1u);
     EXPECT_EQ(one[0].name, "m.obj");
+}
+
+TEST(LoadKinds, ObjectsAreOnePartWhereTheyShareABorder) {
+    const TempFolder folder;
+    using Names = std::vector<std::string>;
+    const auto names_of = [&](const std::string& text) {
+        Names names;
+        for (const AssemblyPart& part : load_assembly(folder.write("m.obj", text))) names.push_back(part.name);
+        return names;
+    };
+    // Each face is an object with vertices of its own, as some programs write a CAD body.
+    const auto face = [](const Mesh& mesh, std::size_t k) {
+        Mesh own;
+        for (std::size_t t = 2 * k; t < 2 * k + 2; ++t) {
+            const auto [a, b, c] = mesh.triangles[t];
+            append(own, {"", {mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]}, {{0, 1, 2}}});
+        }
+        return own;
+    };
+    const auto by_faces = [&](const Mesh& mesh, std::size_t first) {
+        std::string text;
+        for (std::size_t k = 0; k < 6; ++k)
+            text += grouped(face(mesh, k), first + 6 * k, {{0, "o face " + std::to_string(k)}});
+        return text;
+    };
+    EXPECT_EQ(names_of(by_faces(box(), 1)), Names{"m.obj"});
+    Mesh apart = box(), beside = box();
+    for (Vec3& v : apart.vertices) v.x += 3;
+    for (Vec3& v : beside.vertices) v.x += 1;
+    EXPECT_EQ(names_of(by_faces(box(), 1) + grouped(apart, 37, {{0, "o other"}})),
+              (Names{"face 0 and 5 more", "other"}));
+    // Closed objects have no border: they stay parts where they share a face, or an edge with an open one.
+    const std::string two = grouped(box(), 1, {{0, "o left"}}) + grouped(beside, 9, {{0, "o right"}});
+    EXPECT_EQ(names_of(two), (Names{"left", "right"}));
+    EXPECT_EQ(names_of(two + grouped(face(apart, 0), 17, {{0, "o sheet"}})), (Names{"left", "right", "sheet"}));
+    EXPECT_EQ(names_of(two + grouped(face(beside, 3), 17, {{0, "o sheet"}})), (Names{"left", "right", "sheet"}));
+    // A sheet that was cut into objects is one; sheets that share a vertex at most are several.
+    const auto sheet = [&](double x, double y, std::size_t first, const std::string& name) {
+        const Mesh quad{"", {{x, y, 0}, {x + 1, y, 0}, {x + 1, y + 1, 0}, {x, y + 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
+        return grouped(quad, first, {{0, "o " + name}});
+    };
+    EXPECT_EQ(names_of(sheet(0, 0, 1, "a") + sheet(1, 0, 5, "b") + sheet(2, 0, 9, "c")), Names{"m.obj"});
+    EXPECT_EQ(names_of(sheet(0, 0, 1, "a") + sheet(1, 1, 5, "b") + sheet(5, 0, 9, "c")), (Names{"a", "b", "c"}));
 }
 
 TEST(LoadKinds, ObjAsModellersWriteIt) {
