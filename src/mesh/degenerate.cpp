@@ -315,6 +315,13 @@ bool is_degenerate(const Triangle& triangle, std::span<const Vec3> vertices) {
     return has_repeated(triangle) || collinear(snapped(vertices[a]), snapped(vertices[b]), snapped(vertices[c]));
 }
 
+std::vector<std::uint32_t> triangles_with_area(std::span<const Triangle> triangles, std::span<const Vec3> vertices) {
+    std::vector<std::uint32_t> with_area;
+    for (std::uint32_t i = 0; i < triangles.size(); ++i)
+        if (!is_degenerate(triangles[i], vertices)) with_area.push_back(i);
+    return with_area;
+}
+
 Dropped drop_degenerate(std::vector<Triangle>& triangles, std::span<const Vec3> vertices) {
     return Dropper(triangles, vertices).find();
 }

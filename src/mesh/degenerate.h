@@ -6,6 +6,7 @@
 #include "mesh/adjacency.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -20,6 +21,9 @@ struct Dropped {
 
 /// Whether a vertex occurs twice or all three lie on one line, exactly.
 bool is_degenerate(const Triangle& triangle, std::span<const Vec3> vertices);
+
+/// Those that are not degenerate, ascending.
+std::vector<std::uint32_t> triangles_with_area(std::span<const Triangle> triangles, std::span<const Vec3> vertices);
 
 /// Finds the degenerate triangles, and those with the vertices and the winding of an earlier one, that can be dropped.
 /// Of a surface that is there twice, back to back, and closed, one goes. An edge with an even number of triangles, a

@@ -3,11 +3,12 @@
 
 #include "mesh/degenerate.h"
 #include "mesh/measure.h"
+#include "mesh/odd_times.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
+#include <iterator>
 
 namespace raycontact {
 namespace {
@@ -54,8 +55,9 @@ Vec3 middle_of(std::uint32_t triangle, const PreparedMesh& mesh) {
 
 /// Finds all triangles but some that a ray from a point of a triangle crosses in the space in front of it. Tries
 /// directions until one is clear, by more than rounding, of every edge and of surface at its origin; false if none is.
+/// Counts the triangles that it looks at.
 bool cast_from(std::uint32_t from, const Vec3& origin, const PreparedMesh& mesh, const MeshTree& tree,
-               std::span<const std::uint32_t> without, std::vector<Crossing>& crossings) {
+               std::span<const std::uint32_t> without, std::vector<Crossing>& crossings, std::size_t& looked_at) {
     const auto corners = [&](std::uint32_t t) {
         const auto [a, b, c] = mesh.triangles[t];
         return std::array{mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
@@ -73,6 +75,7 @@ bool cast_from(std::uint32_t from, const Vec3& origin, const PreparedMesh& mesh,
         crossings.clear();
         bool clear = true;
         tree.along_ray(origin, direction, [&](std::uint32_t t) {
+            ++looked_at;
             if (!clear || std::ranges::find(without, t) != without.end()) return;
             const auto [p, q, r] = corners(t);
             const int sign = cross_triangle(direction, p - origin, q - origin, r - origin, clear);
@@ -108,68 +111,94 @@ std::vector<std::array<std::uint32_t, 6>> extreme_triangles(const PreparedMesh& 
     return extremes;
 }
 
-/// How many closed patches surround every given triangle of a patch. A patch surrounds a triangle if a ray from there
-/// crosses it an odd number of times.
-std::size_t patches_around(std::uint32_t own, std::span<const std::uint32_t> from, const PreparedMesh& mesh,
-                           const Patches& patches, const MeshTree& tree) {
-    std::vector<std::uint32_t> around;
-    std::vector<Crossing> crossings;
-    for (std::size_t k = 0; k < from.size(); ++k) {
-        if (!cast_from(from[k], middle_of(from[k], mesh), mesh, tree, from.subspan(k, 1), crossings))
-            return 0; // not known: not nested
-        std::map<std::uint32_t, std::size_t> times;
-        for (const Crossing& crossing : crossings) ++times[patches.of[crossing.triangle]];
-        if (k == 0) {
-            for (const auto& [patch, count] : times) {
-                if (patch != own && patches.list[patch].closed) around.push_back(patch);
-            }
-        }
-        std::erase_if(around, [&](std::uint32_t patch) { return times[patch] % 2 == 0; });
-        if (around.empty()) break;
-    }
-    return around.size();
-}
-
-} // namespace
-
-std::vector<char> patches_to_turn(const PreparedMesh& mesh, const Patches& patches, const LazyTree& tree,
-                                  Nesting nesting) {
+/// The signed volume of each patch; 0 where it is open, or where rounding could change the sign.
+std::vector<double> volumes_of(const PreparedMesh& mesh, const Patches& patches) {
     const std::size_t count = patches.list.size();
     // About a vertex of its own: seen from afar, the volume of a small patch is lost in the rounding of the sum.
-    std::vector<LongSum> volumes(count), roundings(count);
+    std::vector<LongSum> sums(count), roundings(count);
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
         const auto [a, b, c] = mesh.triangles[i];
         const std::uint32_t p = patches.of[i];
         const Vec3 reach = mesh.vertices[a] - mesh.vertices[mesh.triangles[patches.list[p].first][0]];
         const Vec3 ab = mesh.vertices[b] - mesh.vertices[a], ac = mesh.vertices[c] - mesh.vertices[a];
-        volumes[p].add(dot(reach, cross(ab, ac)) / 6);
+        sums[p].add(dot(reach, cross(ab, ac)) / 6);
         roundings[p].add(1e-14 * length(reach) * length(ab) * length(ac)); // a generous bound
     }
-    std::vector<std::array<std::uint32_t, 6>> extremes;
-    if (count > 1) extremes = extreme_triangles(mesh, patches);
-    std::vector<char> turn(count, 0);
-    for (std::uint32_t p = 0; p < count; ++p) {
-        const double volume = volumes[p].value();
-        if (!patches.list[p].closed || !(std::fabs(volume) > roundings[p].value())) continue;
-        const auto around = [&] { return count > 1 ? patches_around(p, extremes[p], mesh, patches, tree()) : 0; };
-        switch (nesting) {
-        case Nesting::as_wound:
-            turn[p] = volume < 0 && around() == 0 ? 1 : 0;
-            break;
-        case Nesting::cavities:
-            turn[p] = (volume < 0) != (around() % 2 == 1) ? 1 : 0;
-            break;
-        case Nesting::solids:
-            turn[p] = volume < 0 ? 1 : 0;
+    std::vector<double> volumes(count, 0);
+    for (std::size_t p = 0; p < count; ++p)
+        if (patches.list[p].closed && std::fabs(sums[p].value()) > roundings[p].value()) volumes[p] = sums[p].value();
+    return volumes;
+}
+
+/// Finds the closed patches around others.
+class Surroundings {
+public:
+    Surroundings(const PreparedMesh& mesh, const Patches& patches, const LazyTree& tree)
+        : mesh_(mesh), patches_(patches), tree_(tree) {}
+
+    /// The closed patches that surround every extreme triangle of a patch, ascending; none where rounding leaves that
+    /// open. A patch surrounds a triangle if a ray from there crosses it an odd number of times. nullopt: all rays
+    /// together meet too many triangles, as those of a million shells in each other would.
+    std::optional<std::vector<std::uint32_t>> of(std::uint32_t own) {
+        std::vector<std::uint32_t> around, crossed, both;
+        if (patches_.list.size() == 1) return around;
+        if (extremes_.empty()) extremes_ = extreme_triangles(mesh_, patches_);
+        for (std::size_t k = 0; k < 6; ++k) {
+            if (looked_at_ > (std::size_t{1} << 22) + 128 * mesh_.triangles.size()) return std::nullopt;
+            const std::uint32_t from = extremes_[own][k];
+            if (!cast_from(from, middle_of(from, mesh_), mesh_, tree_(), std::span(&from, 1), crossings_, looked_at_))
+                return std::vector<std::uint32_t>();
+            crossed.clear();
+            for (const Crossing& crossing : crossings_) {
+                const std::uint32_t patch = patches_.of[crossing.triangle];
+                if (patch != own && patches_.list[patch].closed) crossed.push_back(patch);
+            }
+            keep_odd_times(crossed);
+            both.clear();
+            std::ranges::set_intersection(around, crossed, std::back_inserter(both));
+            around = k == 0 ? crossed : both;
+            if (around.empty()) break;
         }
+        return around;
     }
-    return turn;
+
+private:
+    const PreparedMesh& mesh_;
+    const Patches& patches_;
+    const LazyTree& tree_;
+    std::vector<std::array<std::uint32_t, 6>> extremes_;
+    std::vector<Crossing> crossings_;
+    std::size_t looked_at_ = 0; ///< triangles
+};
+
+} // namespace
+
+Turns patches_to_turn(const PreparedMesh& mesh, const Patches& patches, const LazyTree& tree, Nesting nesting) {
+    const std::vector<double> volumes = volumes_of(mesh, patches);
+    Surroundings surroundings(mesh, patches, tree);
+    Turns turns{std::vector<char>(volumes.size(), 0)};
+    for (std::uint32_t p = 0; p < volumes.size(); ++p) {
+        const bool inward = volumes[p] < 0;
+        if (volumes[p] == 0 || (!inward && nesting != Nesting::cavities)) continue;
+        bool turn = inward;
+        if (nesting != Nesting::solids) {
+            const auto around = surroundings.of(p);
+            if (!around) {
+                ++turns.unknown;
+                continue;
+            }
+            turn = nesting == Nesting::cavities ? inward != (around->size() % 2 == 1) : around->empty();
+        }
+        turns.patches[p] = turn ? 1 : 0;
+    }
+    return turns;
 }
 
 std::optional<int> winding_in_front(std::uint32_t triangle, const Vec3& point, const PreparedMesh& mesh,
                                     const MeshTree& tree, std::span<const std::uint32_t> without) {
     std::vector<Crossing> crossings;
-    if (!cast_from(triangle, point, mesh, tree, without, crossings)) return std::nullopt;
+    std::size_t looked_at = 0;
+    if (!cast_from(triangle, point, mesh, tree, without, crossings, looked_at)) return std::nullopt;
     int winding = 0;
     for (const Crossing& crossing : crossings) winding += crossing.sign;
     return winding;

@@ -6,17 +6,22 @@
 #include "mesh/mesh_tree.h"
 #include "mesh/patches.h"
 
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
 namespace raycontact {
 
-/// Whether each patch must be turned, once its windings agree, so that it is as `nesting` has it: an outer surface
+/// Which patches must be turned, once the windings of each agree, so that it is as `nesting` has it: an outer surface
 /// encloses a positive volume, a cavity a negative one. Patches that are open, not orientable or without volume stay as
-/// they are.
-std::vector<char> patches_to_turn(const PreparedMesh& mesh, const Patches& patches, const LazyTree& tree,
-                                  Nesting nesting);
+/// they are, and those for which it would take too long to find what lies around them.
+struct Turns {
+    std::vector<char> patches; ///< whether each is one
+    std::size_t unknown = 0;   ///< patches for which it would take too long
+};
+Turns patches_to_turn(const PreparedMesh& mesh, const Patches& patches, const LazyTree& tree, Nesting nesting);
 
 /// The winding number of a closed mesh in front of a point of a triangle, and of others that lie on it there,
 /// `without`, among which it is; nothing where rounding could change it.

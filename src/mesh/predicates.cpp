@@ -98,4 +98,11 @@ Vec3 snapped(const Vec3& point) {
     return {snap(point.x), snap(point.y), snap(point.z)};
 }
 
+std::vector<Vec3> snapped(std::span<const Vec3> points) {
+    std::vector<Vec3> exact;
+    exact.reserve(points.size());
+    for (const Vec3& p : points) exact.push_back(snapped(p));
+    return exact;
+}
+
 } // namespace raycontact

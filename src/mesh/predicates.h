@@ -4,6 +4,8 @@
 #include <raycontact/pose.h>
 
 #include <cstddef>
+#include <span>
+#include <vector>
 
 namespace raycontact {
 
@@ -28,5 +30,6 @@ bool collinear(const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// Coordinates below 1e-60 m count as 0, so that no product here can underflow and lose its exactness.
 Vec3 snapped(const Vec3& point);
+std::vector<Vec3> snapped(std::span<const Vec3> points);
 
 } // namespace raycontact

@@ -38,20 +38,6 @@ PreparedMesh weld(const Mesh& mesh) {
     return prepared;
 }
 
-std::vector<Vec3> all_snapped(std::span<const Vec3> vertices) {
-    std::vector<Vec3> exact;
-    exact.reserve(vertices.size());
-    for (const Vec3& v : vertices) exact.push_back(snapped(v));
-    return exact;
-}
-
-std::vector<std::uint32_t> triangles_with_area(std::span<const Triangle> triangles, std::span<const Vec3> exact) {
-    std::vector<std::uint32_t> with_area;
-    for (std::uint32_t i = 0; i < triangles.size(); ++i)
-        if (!is_degenerate(triangles[i], exact)) with_area.push_back(i);
-    return with_area;
-}
-
 /// Drops what drop_degenerate() finds, and reports how many.
 void drop_triangles(PreparedMesh& prepared, std::span<const Vec3> vertices) {
     const Dropped dropped = drop_degenerate(prepared.triangles, vertices);
@@ -134,7 +120,7 @@ bool mend_windings(PreparedMesh& prepared, const Patches& patches, const LazyTre
         const bool fewer_against = 2 * std::uint64_t{patch.turned} <= patch.size;
         if (patch.orientable && (patches.against[i] != 0) == fewer_against) std::swap(triangles[i][1], triangles[i][2]);
     }
-    const std::vector<char> contradicts = patches_to_turn(prepared, patches, tree, nesting);
+    const auto [contradicts, unknown] = patches_to_turn(prepared, patches, tree, nesting);
     std::size_t mended = 0, turned_whole = 0;
     for (std::size_t i = 0; i < triangles.size(); ++i) {
         const std::uint32_t p = patches.of[i];
@@ -151,6 +137,9 @@ bool mend_windings(PreparedMesh& prepared, const Patches& patches, const LazyTre
             "turned " + counted(turned_whole, "component") + " of " + std::to_string(patches.list.size())
             + (nesting == Nesting::cavities ? " whose winding contradicts its nesting" : " that wound inward"));
     }
+    if (unknown > 0)
+        prepared.report.repairs.push_back("left " + counted(unknown, "component")
+                                          + " as wound: too many lie in each other to tell which are cavities");
     return triangles != before;
 }
 
@@ -268,7 +257,7 @@ PreparedMesh prepare_mesh(const Mesh& mesh, const PrepareOptions& options) {
         if (stitch(prepared, edges, within, executor)) edges = sorted_half_edges(prepared.triangles);
     }
 
-    std::vector<Vec3> exact = all_snapped(prepared.vertices);
+    std::vector<Vec3> exact = snapped(prepared.vertices);
     std::optional<Surface> surface(std::in_place, prepared.triangles, exact, executor);
     if (surface->is_empty()) throw InputError(name + ": no triangle has an area");
     check_size(prepared.vertices, name);
@@ -301,7 +290,7 @@ PreparedMesh prepare_mesh(const Mesh& mesh, const PrepareOptions& options) {
                 break;
             }
             take(prepared, united, round == 0);
-            exact = all_snapped(prepared.vertices);
+            exact = snapped(prepared.vertices);
             surface.emplace(prepared.triangles, exact, executor);
             if (surface->is_empty()) throw InputError(name + ": nothing is left of parts that lie in each other");
             edges = sorted_half_edges(prepared.triangles);
@@ -318,7 +307,7 @@ MeshReport measured_report(const PreparedMesh& mesh, Executor& executor) {
     PreparedMesh measured(mesh);
     const std::vector<HalfEdge> edges = sorted_half_edges(mesh.triangles);
     fill_report(measured, edges);
-    const std::vector<Vec3> exact = all_snapped(mesh.vertices);
+    const std::vector<Vec3> exact = snapped(mesh.vertices);
     const std::vector<std::uint32_t> with_area = triangles_with_area(mesh.triangles, exact);
     if (with_area.empty()) throw InputError("no triangle has an area");
     const MeshTree tree(exact, mesh.triangles, with_area, executor);

@@ -105,6 +105,18 @@ TEST(Nesting, AsIsChangesNothingAndSaysSo) {
         prepare_mesh(nested({true, true}), {.repair = Repair::as_is}).report.outward); // winding number 2 inside
 }
 
+TEST(Nesting, OfTooManyShellsInEachOtherTheRestStaysAsWound) {
+    const auto prepared = [](int count) { return prepare_mesh(shells(count), {.check = Check::topology}); };
+    EXPECT_TRUE(prepared(500).report.repairs.empty());
+    const PreparedMesh many = prepared(1000);
+    ASSERT_EQ(many.report.repairs.size(), 1u);
+    EXPECT_TRUE(many.report.repairs[0].starts_with("left ")
+                && many.report.repairs[0].ends_with(
+                    " components as wound: too many lie in each other to tell which are cavities"))
+        << many.report.repairs[0];
+    EXPECT_EQ(many.triangles, shells(1000).triangles);
+}
+
 TEST(Nesting, BesideIsNotInside) {
     Mesh mesh = torus(24, 12, 2, 0.5);
     append(mesh, torus(16, 8, 0.5, 0.2)); // in the hole

@@ -43,6 +43,16 @@ inline Mesh box(double size = 1) {
     return mesh;
 }
 
+/// Cubes in each other, the outermost outward, the others its cavities.
+inline Mesh shells(int count) {
+    Mesh mesh{"shells", {}, {}};
+    for (int i = 0; i < count; ++i) {
+        const double h = 1 - double(i) / (count + 1);
+        append_box(mesh, {-h, -h, -h}, {h, h, h}, i == 0);
+    }
+    return mesh;
+}
+
 /// A torus about z with a tube that may be pinched; closed, outward. (major > minor)
 inline Mesh torus(std::uint32_t around, std::uint32_t across, double major, double minor, double bump = 0) {
     Mesh mesh{"torus", {}, {}};
