@@ -52,7 +52,7 @@ struct Options {
     double clearance = 0, tolerance = 0;
     std::optional<double> ignore_touching, weld;
     std::string unit; ///< empty: not told
-    bool volume = false;
+    bool components = false, volume = false;
     std::uint32_t threads = 0;
     std::string out, csv, bcf;
     bool json = false;
@@ -235,12 +235,14 @@ Result search(const Options& options) {
     Result result;
     std::vector<std::string> left_out;
     result.parts = load_parts({options.files.begin(), options.files.end()}, &left_out);
-    for (const std::string& line : left_out) std::cerr << line << '\n';
     if (options.weld || options.length_unit().metres != 1) prepare_parts(result.parts, options);
+    if (options.components) result.parts = split_components(result.parts, &left_out);
+    for (const std::string& line : left_out) std::cerr << line << '\n';
     if (result.parts.size() < 2)
-        throw InputError(
-            options.files[0]
-            + ": is one part; give several files, or one that has parts: nodes, objects, groups or solids");
+        throw InputError(options.files[0]
+                         + (options.components ? ": --components finds one part; give several files"
+                                               : ": is one part; give several files, or one that has parts: nodes, "
+                                                 "objects, groups or solids; --components splits parts further"));
     listen_for_stop();
     how.stop = [] { return stop_signal() != 0; };
     Progress progress("clash", 1000, "");
@@ -333,6 +335,8 @@ void add_clash(CLI::App& app) {
             return "\"" + word + "\" is no unit; give m, mm, cm or in";
         });
     add_weld_option(*command, options->weld)->type_name("LENGTH");
+    command->add_flag("--components", options->components,
+                      "split parts into their connected components, each solid with its cavities");
     command->add_flag("--volume", options->volume, "also find the volume that two parts share (slow)");
     add_number(*command, "--threads", options->threads, "0: one for each core", 0u, 1024u);
     add_out(*command, "--out", options->out, "write all parts there as .glb, those that clash in red")

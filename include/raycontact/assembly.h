@@ -28,7 +28,7 @@ struct AssemblyPart {
 /// 3MF file each object with a mesh as often as its build places it. Of an OBJ file its objects (`o`) if there are
 /// several, else its groups (`g`); of an STL file its solids; of any other file its one mesh. Objects, groups and
 /// solids that are patches of one surface, open along an edge that they share, are one part; so what is closed by
-/// itself is a part of its own. Indices of a part's vertices and
+/// itself is a part of its own. split_components() (clash.h) splits parts further. Indices of a part's vertices and
 /// triangles begin at 0; those of objects, groups and solids are numbered as their triangles come to them. left_out:
 /// becomes what was left out or mended, in words that name it. Throws InputError as load_mesh().
 RAYCONTACT_API std::vector<AssemblyPart> load_assembly(const std::filesystem::path& file,

@@ -92,6 +92,16 @@ struct ClashReport {
 RAYCONTACT_API std::vector<AssemblyPart> load_parts(const std::vector<std::filesystem::path>& files,
                                                     std::vector<std::string>* left_out = nullptr);
 
+/// The components of all parts, in their order, in place of those that have several: what is closed by itself, with its
+/// cavities, is one, whatever it touches; what is open hangs together over shared vertices, as exact positions are one
+/// vertex. They are found after the repairs of prepare_mesh(), without triangles that these drop, and begin their
+/// indices at 0, in the part's order. They have the part's name and a number; names differ. The parent of a part that
+/// is split is the first of its components. A part that prepare_mesh() refuses stays whole, and one of which so many
+/// components lie in each other that their cavities would take too long to find. left_out: gets a line for each of the
+/// latter. Throws InputError for a part without a mesh.
+RAYCONTACT_API std::vector<AssemblyPart> split_components(const std::vector<AssemblyPart>& parts,
+                                                          std::vector<std::string>* left_out = nullptr);
+
 /// Every pair of parts that shares a point (exactly, as intersects()) or is near. Depths are those of collide() with
 /// Direction::refined, so that of threads and tubes none is deeper than the way out is long; where faces coincide, so
 /// that rounding would decide, small moves tell touching parts from others. Throws InputError for fewer than two parts,

@@ -2,7 +2,9 @@
 #include "clash/parts.h"
 
 #include "executor/executor.h"
+#include "mesh/components.h"
 #include "mesh/measure.h"
+#include "mesh/split.h"
 #include "printable.h"
 
 #include <raycontact/error.h>
@@ -27,14 +29,18 @@ struct Loaded {
     std::exception_ptr fault;
 };
 
-/// Names that several files have get the file before them, then names that several parts have a number.
-void tell_apart(std::vector<AssemblyPart>& parts) {
+/// Names that several files have get the file before them.
+void put_files_before(std::vector<AssemblyPart>& parts) {
     std::map<std::string, std::set<std::string>> files;
     for (const AssemblyPart& part : parts) files[part.name].insert(part.file);
     for (AssemblyPart& part : parts)
         if (files[part.name].size() > 1)
             part.name = part.name == std::filesystem::path(part.file).filename().string() ? part.file
                                                                                           : part.file + ":" + part.name;
+}
+
+/// Names that several parts have get a number.
+void tell_apart(std::vector<AssemblyPart>& parts) {
     std::map<std::string, std::size_t> count;
     for (const AssemblyPart& part : parts) ++count[part.name];
     std::set<std::string> taken;
@@ -74,8 +80,53 @@ std::vector<AssemblyPart> load_parts(const std::vector<std::filesystem::path>& f
             for (const std::string& words : loaded[i].left_out)
                 left_out->push_back(printable(files[i].string()) + ": " + words);
     }
+    put_files_before(parts);
     tell_apart(parts);
     return parts;
+}
+
+std::vector<AssemblyPart> split_components(const std::vector<AssemblyPart>& parts, std::vector<std::string>* left_out) {
+    struct Split {
+        std::vector<std::shared_ptr<const Mesh>> meshes; ///< none: the part stays as it is
+        bool is_tangled = false;
+    };
+    std::map<const Mesh*, Split> splits;
+    std::vector<std::size_t> firsts; // parts, of each mesh one
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        if (!parts[i].mesh) throw InputError("split_components: " + parts[i].name + " has no mesh");
+        if (splits.try_emplace(parts[i].mesh.get()).second) firsts.push_back(i);
+    }
+    const std::vector<clash::Part> near = clash::parts_of(parts); // prepare_mesh() refuses what is far
+    Executor executor(0);
+    const std::uint32_t of_one = executor.threads_of_each(firsts.size());
+    executor.each(firsts.size(), 1, [&](std::uint32_t i) {
+        const Mesh& whole = *parts[firsts[i]].mesh;
+        Split& split = splits.at(&whole);
+        try {
+            const auto components = find_components(*near[firsts[i]].mesh, of_one);
+            split.is_tangled = !components;
+            if (!components || components->count < 2) return;
+            for (Mesh& mesh : split_mesh(whole, components->of, components->count)) {
+                mesh.name = whole.name;
+                split.meshes.push_back(std::make_shared<const Mesh>(std::move(mesh)));
+            }
+        } catch (const InputError&) { // find_clashes() tells why, if it needs the part
+        }
+    });
+    std::vector<AssemblyPart> all;
+    std::vector<std::size_t> place(parts.size());
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        place[i] = all.size();
+        const Split& split = splits.at(parts[i].mesh.get());
+        if (split.meshes.empty()) all.push_back(parts[i]);
+        for (const auto& mesh : split.meshes) all.emplace_back(parts[i]).mesh = mesh;
+        if (split.is_tangled && left_out != nullptr)
+            left_out->push_back(parts[i].name + ": not split: too many of its components lie in each other");
+    }
+    for (AssemblyPart& part : all)
+        if (part.parent < place.size()) part.parent = place[part.parent];
+    tell_apart(all);
+    return all;
 }
 
 namespace clash {

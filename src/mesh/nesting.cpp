@@ -204,6 +204,22 @@ std::optional<int> winding_in_front(std::uint32_t triangle, const Vec3& point, c
     return winding;
 }
 
+std::optional<std::vector<std::uint32_t>> solids_around(const PreparedMesh& mesh, const Patches& patches,
+                                                        const LazyTree& tree) {
+    const std::vector<double> volumes = volumes_of(mesh, patches);
+    Surroundings surroundings(mesh, patches, tree);
+    std::vector<std::uint32_t> solids(volumes.size());
+    for (std::uint32_t p = 0; p < volumes.size(); ++p) {
+        solids[p] = p;
+        if (!(volumes[p] < 0)) continue;
+        const auto around = surroundings.of(p);
+        if (!around) return std::nullopt;
+        for (const std::uint32_t other : *around)
+            if (volumes[other] > 0 && (solids[p] == p || volumes[other] < volumes[solids[p]])) solids[p] = other;
+    }
+    return solids;
+}
+
 // The winding number changes by one across every triangle and nowhere else. Without self-intersections the space right
 // in front of a patch is connected and crosses no triangle (a patch continues only across edges that have no third
 // triangle), so one point in front of each patch, with winding number 0 there and hence 1 behind, represents all space

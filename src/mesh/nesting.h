@@ -28,6 +28,11 @@ Turns patches_to_turn(const PreparedMesh& mesh, const Patches& patches, const La
 std::optional<int> winding_in_front(std::uint32_t triangle, const Vec3& point, const PreparedMesh& mesh,
                                     const MeshTree& tree, std::span<const std::uint32_t> without);
 
+/// For each patch that winds inward the innermost solid around it, of which it is a cavity; for others the patch
+/// itself. nullopt where it would take too long to find them. For meshes that patches_to_turn() had turned.
+std::optional<std::vector<std::uint32_t>> solids_around(const PreparedMesh& mesh, const Patches& patches,
+                                                        const LazyTree& tree);
+
 /// Whether the winding number of a closed, oriented mesh without self-intersections is 0 outside and 1 inside
 /// everywhere.
 bool winds_outward(const PreparedMesh& mesh, const Patches& patches, const MeshTree& tree);

@@ -11,6 +11,7 @@
 #include "mesh/nesting.h"
 #include "mesh/predicates.h"
 #include "mesh/stitch.h"
+#include "mesh/surface.h"
 #include "mesh/unite.h"
 #include "number_text.h"
 
@@ -142,24 +143,6 @@ bool mend_windings(PreparedMesh& prepared, const Patches& patches, const LazyTre
                                           + " as wound: too many lie in each other to tell which are cavities");
     return triangles != before;
 }
-
-/// The triangles that a mesh is checked by: those with an area, in a tree that is made when it is first asked for.
-class Surface {
-public:
-    Surface(std::span<const Triangle> triangles, std::span<const Vec3> exact, Executor& executor)
-        : triangles_(triangles), exact_(exact), executor_(executor), with_area_(triangles_with_area(triangles, exact)) {
-    }
-
-    bool is_empty() const { return with_area_.empty(); }
-    const MeshTree& tree() const { return tree_ ? *tree_ : tree_.emplace(exact_, triangles_, with_area_, executor_); }
-
-private:
-    std::span<const Triangle> triangles_;
-    std::span<const Vec3> exact_;
-    Executor& executor_;
-    std::vector<std::uint32_t> with_area_;
-    mutable std::optional<MeshTree> tree_;
-};
 
 /// Spans the holes that `which` names, and reports them. The surface as it is then; nothing if there are no holes.
 std::optional<Surface> span_holes(PreparedMesh& prepared, std::span<const HalfEdge> edges, std::span<const Vec3> exact,
@@ -308,10 +291,9 @@ MeshReport measured_report(const PreparedMesh& mesh, Executor& executor) {
     const std::vector<HalfEdge> edges = sorted_half_edges(mesh.triangles);
     fill_report(measured, edges);
     const std::vector<Vec3> exact = snapped(mesh.vertices);
-    const std::vector<std::uint32_t> with_area = triangles_with_area(mesh.triangles, exact);
-    if (with_area.empty()) throw InputError("no triangle has an area");
-    const MeshTree tree(exact, mesh.triangles, with_area, executor);
-    check_surface(measured, find_patches(mesh.triangles, edges), exact, tree, executor);
+    const Surface surface(mesh.triangles, exact, executor);
+    if (surface.is_empty()) throw InputError("no triangle has an area");
+    check_surface(measured, find_patches(mesh.triangles, edges), exact, surface.tree(), executor);
     return measured.report;
 }
 

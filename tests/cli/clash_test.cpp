@@ -249,6 +249,24 @@ TEST_F(Clash, NamesAreUnique) {
               (std::set<std::string>{"bolt #2", "bolt #3", "bolt #1", "nodes[3]", "part.obj", "other/part.obj"}));
 }
 
+TEST_F(Clash, PartsAreSplitIntoTheirComponents) {
+    write_cube("one.obj", 0);
+    std::ostringstream two;
+    for (const double x : {0.0, 0.9}) {
+        for (int i = 0; i < 8; ++i)
+            two << "v " << x + (i & 1) - 0.5 << ' ' << (i >> 1 & 1) - 0.5 << ' ' << (i >> 2 & 1) - 0.5 << '\n';
+        two << "f -8 -6 -5 -7\nf -4 -3 -1 -2\nf -8 -7 -3 -4\nf -6 -2 -1 -5\nf -8 -4 -2 -6\nf -7 -5 -1 -3\n";
+    }
+    folder_.write("two.obj", two.str());
+    expect_refused(run({"two.obj"}), "--components splits parts further");
+    const json found = only_clash({"two.obj", "--components"});
+    EXPECT_EQ(found["a"], "two.obj #1");
+    EXPECT_EQ(found["b"], "two.obj #2");
+    EXPECT_NEAR(found["depth"].get<double>(), 0.1, 1e-5);
+    EXPECT_EQ(clashes({"two.obj", "one.obj", "--components", "--against", "one.obj"}).size(), 2u);
+    expect_refused(run({"one.obj", "--components"}), "--components finds one part");
+}
+
 TEST_F(Clash, FittedCopiesOnlyTouch) {
     const auto write_prism = [&](const std::string& name, const std::vector<std::array<double, 2>>& outline) {
         std::ostringstream text, low, high;

@@ -8,7 +8,9 @@
 #include "tests/unit/mesh/solids.h"
 
 #include "mesh/check.h"
+#include "mesh/components.h"
 #include "mesh/input_file.h"
+#include "mesh/split.h"
 
 #include <raycontact/mesh.h>
 #include <raycontact/shape.h>
@@ -53,6 +55,10 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
         for (const auto& triangle : prepared.triangles)
             for (const std::uint32_t vertex : triangle)
                 if (vertex >= prepared.vertices.size()) fuzz::fail("a vertex that is none");
+        const auto components = find_components(mesh, 1);
+        if (components)
+            for (const std::uint32_t component : components->of)
+                if (component >= components->count && component != in_none) fuzz::fail("a component that is none");
         if (prepared.triangles.size() <= 64) Shape::make(prepared);
     });
     return 0;

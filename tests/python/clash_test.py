@@ -88,6 +88,28 @@ def test_corners_that_differ_in_their_last_digits_are_welded():
         rc.clash([metre, metre], weld=1e-7)
 
 
+def test_parts_are_split_into_their_components(tmp_path, capsys):
+    vertices, faces = (np.asarray(half) for half in meshes.box())
+    both = np.vstack([vertices, vertices + [0.75, 0, 0]]), np.vstack([faces, faces + len(vertices)])
+    file = tmp_path / "two.stl"
+    file.write_bytes(meshes.ascii_stl(*both))
+    parts = rc.load_assembly(file, components=True)
+    assert [part.name for part in parts] == ["two.stl #1", "two.stl #2"]
+    assert [len(part.mesh.triangles) for part in parts] == [len(faces)] * 2
+    for assembly in (file, [("two.stl", rc.Mesh(*both), None)]):
+        (found,) = rc.clash(assembly, components=True)
+        assert (found.a, found.b) == ("two.stl #1", "two.stl #2") and found.depth == pytest.approx(0.25, abs=1e-5)
+    with pytest.raises(rc.InputError, match="components=True splits parts further"):
+        rc.clash(file)
+    assert in_shell(capsys, file, "--components", "--check")[0] == 3
+    # After scale and weld.
+    loose = both[0][both[1]].reshape(-1, 3)
+    loose = loose + np.random.default_rng(1).uniform(-1e-8, 1e-8, loose.shape)
+    soup = rc.Mesh(1000 * loose, np.arange(len(loose)).reshape(-1, 3), name="soup")
+    (found,) = rc.clash([soup], scale=0.001, weld=1e-6, components=True)
+    assert (found.a, found.b) == ("soup #1", "soup #2") and found.depth == pytest.approx(0.25, abs=1e-5)
+
+
 def in_shell(capsys, *words):
     status = main(["clash", *[str(word) for word in words]])
     told = capsys.readouterr()

@@ -78,7 +78,8 @@ def _excluded(given: str) -> list[str | tuple[str, str]]:
 def _clash(options: argparse.Namespace) -> int:
     exclude = [pair for given in options.exclude for pair in _excluded(given)]
     found = rc.clash(
-        options.files, scale=options.scale, weld=options.weld, against=options.against, exclude=exclude,
+        options.files, scale=options.scale, weld=options.weld, components=options.components,
+        against=options.against, exclude=exclude,
         clearance=options.clearance, tolerance=options.tolerance, ignore_touching=options.ignore_touching,
         progress=sys.stderr.isatty(),
     )  # fmt: skip
@@ -138,6 +139,7 @@ def main(arguments: list[str] | None = None) -> int:
     words = "leave out: a file of two such names a line, as CSV; or parent-child, of the nodes of glTF"
     clash.add_argument("--exclude", action="append", default=[], metavar="PAIRS", help=words)
     clash.add_argument("--weld", type=float, metavar="LENGTH", help="join vertices nearer than this, after --scale")
+    clash.add_argument("--components", action="store_true", help="split parts into their connected components")
     clash.add_argument("--clearance", type=float, default=0.0, metavar="LENGTH", help="also find those so near")
     clash.add_argument("--tolerance", type=float, default=0.0, metavar="LENGTH", help="up to this they are touching")
     clash.add_argument("--ignore-touching", type=float, metavar="LENGTH", help="leave out clashes no deeper, metres")

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from . import _core
 from ._arrays import as_count, as_length, as_pose
 from ._core import InputError
-from .mesh import Mesh, scaled_parts, tell
+from .mesh import Mesh, scaled_parts, split_parts, tell
 
 
 class Clash(NamedTuple):
@@ -131,6 +131,7 @@ def clash(
     *,
     scale: float = 1.0,
     weld: Optional[float] = None,
+    components: bool = False,
     against: Union[str, Sequence[str], None] = None,
     exclude: Iterable[Union[str, tuple[str, str]]] = (),
     clearance: float = 0.0,
@@ -148,6 +149,8 @@ def clash(
     scale: what coordinates and places are multiplied by; 0.001 makes metres of millimetres. Without it all lengths are
         in the unit of the parts.
     weld: as `Mesh` has it, of each part by itself, after scale.
+    components: splits each part into what is closed by itself, with its cavities, and what is open and shares vertices;
+        those of a part are "NAME #1", "NAME #2", ...
     against: names of parts or files, "*" and "?" stand for any: they are tested against all others, and no more.
     exclude: pairs of such names that are left out; and "parent-child", for nodes of a glTF file and those under them.
     clearance: parts that are no farther apart are found, too: kind "near", metres.
@@ -161,9 +164,13 @@ def clash(
     """
     given, files, parents = _parts_of(assembly)
     parts = scaled_parts(given, scale, weld)
+    if components and parts:
+        parts, files, parents = split_parts(parts, files, parents)
     if len(parts) < 2:
+        more = "" if components else "; components=True splits parts further"
         raise InputError(
             f"clash: {len(parts)} part given; give several, or a file that has parts: nodes, objects, groups or solids"
+            + more
         )
     names = [part.name for part in parts]
     poses = np.ascontiguousarray(np.stack([part.pose for part in parts]))

@@ -193,18 +193,20 @@ class AssemblyPart(NamedTuple):
 
 
 def load_assembly(
-    file: Union[str, os.PathLike[str]], *, scale: float = 1.0, weld: Optional[float] = None
+    file: Union[str, os.PathLike[str]], *, scale: float = 1.0, weld: Optional[float] = None, components: bool = False
 ) -> list[AssemblyPart]:
     """Of a glTF file each node of its scene that places a mesh, in node order; of a 3MF file each object with a mesh as
     often as its build places it; of OBJ its objects or groups, of STL its solids; of any other file its one mesh.
     What is left out is told by a UserWarning that names it.
 
     scale: what coordinates and places are multiplied by; 0.001 for a file in millimetres. weld: as `Mesh` has it, of
-    each part by itself. Raises InputError as `Mesh` does for a file.
+    each part by itself. components: splits each part into what is closed by itself, with its cavities, and what is
+    open and shares vertices; those of a part are "NAME #1", "NAME #2", ... Raises InputError as `Mesh` does for a file.
     """
     parts, left_out = _core.load_assembly(os.fspath(file))
     tell(f"{os.fspath(file)}: {words}" for words in left_out)
-    return scaled_parts(parts, scale, weld)
+    made = scaled_parts(parts, scale, weld)
+    return split_parts(made, [], [])[0] if components else made
 
 
 def tell(left_out: Iterable[str]) -> None:
@@ -227,6 +229,17 @@ def scaled_parts(
         pose[:3, 3] *= by
         made.append(AssemblyPart(name, shared[id(core)], pose))
     return made
+
+
+def split_parts(
+    parts: list[AssemblyPart], files: list[str], parents: list[int]
+) -> tuple[list[AssemblyPart], list[str], list[int]]:
+    """The components of parts, with their files and parents."""
+    names, meshes = [part.name for part in parts], [part.mesh._core for part in parts]
+    poses = np.stack([part.pose for part in parts])
+    (split, files, parents), left_out = _core.split_components(names, meshes, poses, files, parents)
+    tell(left_out)
+    return scaled_parts(split, 1.0), files, parents
 
 
 __all__ = ["AssemblyPart", "HasFaces", "Mesh", "MeshLike", "MeshReport", "load_assembly"]

@@ -82,13 +82,11 @@ nb::tuple tuple_of(const Clash& found) {
                           found.box ? nb::cast(box(*found.box)) : nb::none(), found.volume);
 }
 
-/// progress: None, or a function of what is done, from 0 to 1. files and parents: of none, or as many as names.
-nb::tuple find_clashes_of(const std::vector<std::string>& names, const std::vector<std::shared_ptr<Mesh>>& meshes,
-                          const Matrices& matrices, const std::vector<std::string>& files,
-                          const std::vector<std::ptrdiff_t>& parents, const std::vector<std::string>& against,
-                          const std::vector<std::array<std::string, 2>>& exclude, bool exclude_parent_child,
-                          double clearance, double tolerance, bool volumes, std::uint32_t threads,
-                          const nb::object& progress) {
+/// files and parents: of none, or as many as names.
+std::vector<AssemblyPart> parts_from(const std::vector<std::string>& names,
+                                     const std::vector<std::shared_ptr<Mesh>>& meshes, const Matrices& matrices,
+                                     const std::vector<std::string>& files,
+                                     const std::vector<std::ptrdiff_t>& parents) {
     const auto fits = [&](std::size_t size) { return size == names.size(); };
     if (!fits(meshes.size()) || !fits(matrices.shape(0)) || (!files.empty() && !fits(files.size()))
         || (!parents.empty() && !fits(parents.size())))
@@ -101,6 +99,17 @@ nb::tuple find_clashes_of(const std::vector<std::string>& names, const std::vect
         if (!parents.empty() && parents[i] >= 0) part.parent = std::size_t(parents[i]);
         parts.push_back(std::move(part));
     }
+    return parts;
+}
+
+/// progress: None, or a function of what is done, from 0 to 1. files and parents: as parts_from() has them.
+nb::tuple find_clashes_of(const std::vector<std::string>& names, const std::vector<std::shared_ptr<Mesh>>& meshes,
+                          const Matrices& matrices, const std::vector<std::string>& files,
+                          const std::vector<std::ptrdiff_t>& parents, const std::vector<std::string>& against,
+                          const std::vector<std::array<std::string, 2>>& exclude, bool exclude_parent_child,
+                          double clearance, double tolerance, bool volumes, std::uint32_t threads,
+                          const nb::object& progress) {
+    const std::vector<AssemblyPart> parts = parts_from(names, meshes, matrices, files, parents);
     ClashReport report;
     {
         WithoutGil without_gil;
@@ -138,6 +147,20 @@ void bind_clash(nb::module_& m) {
             return nb::make_tuple(tuples_of(parts), left_out);
         },
         "files"_a);
+    m.def(
+        "split_components",
+        [](const std::vector<std::string>& names, const std::vector<std::shared_ptr<Mesh>>& meshes,
+           const Matrices& matrices, const std::vector<std::string>& files,
+           const std::vector<std::ptrdiff_t>& parents) {
+            std::vector<AssemblyPart> parts = parts_from(names, meshes, matrices, files, parents);
+            std::vector<std::string> left_out;
+            {
+                const WithoutGil without_gil;
+                parts = split_components(parts, &left_out);
+            }
+            return nb::make_tuple(tuples_of(parts), left_out);
+        },
+        "names"_a, "meshes"_a, "poses"_a, "files"_a, "parents"_a);
     m.def("find_clashes", &find_clashes_of, "names"_a, "meshes"_a, "poses"_a, "files"_a, "parents"_a, "against"_a,
           "exclude"_a, "exclude_parent_child"_a, "clearance"_a, "tolerance"_a, "volumes"_a, "threads"_a,
           "progress"_a.none());
