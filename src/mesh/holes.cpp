@@ -257,6 +257,7 @@ bool is_solid(const PreparedMesh& spanned, std::size_t first_spanning, const Mes
     const std::vector<std::uint32_t> chosen = sampled(spanned, first_spanning, samples);
     enum Answer : char { unclear, broken, outer, inner };
     std::vector<Answer> answers(samples, unclear);
+    const Winding winding(spanned, tree);
     executor.each(samples, 1, [&](std::uint32_t i) {
         const std::span<const Vec3> at(spanned.vertices);
         const Vec3 point = point_of(spanned.triangles[chosen[i]], at, i);
@@ -266,7 +267,7 @@ bool is_solid(const PreparedMesh& spanned, std::size_t first_spanning, const Mes
             answers[i] = broken;
             return;
         }
-        const std::optional<int> in_front = winding_in_front(chosen[i], point, spanned, tree, std::span(&chosen[i], 1));
+        const std::optional<int> in_front = winding.in_front_of(chosen[i], point, std::span(&chosen[i], 1));
         if (in_front) answers[i] = *in_front + 1 >= 1 ? inner : outer; // not between faces that lie on each other
     });
     const auto count = [&](Answer which) { return std::size_t(std::ranges::count(answers, which)); };

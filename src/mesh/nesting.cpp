@@ -194,11 +194,14 @@ Turns patches_to_turn(const PreparedMesh& mesh, const Patches& patches, const La
     return turns;
 }
 
-std::optional<int> winding_in_front(std::uint32_t triangle, const Vec3& point, const PreparedMesh& mesh,
-                                    const MeshTree& tree, std::span<const std::uint32_t> without) {
+std::optional<int> Winding::in_front_of(std::uint32_t triangle, const Vec3& point,
+                                        std::span<const std::uint32_t> without) const {
+    if (is_too_much()) return std::nullopt;
     std::vector<Crossing> crossings;
     std::size_t looked_at = 0;
-    if (!cast_from(triangle, point, mesh, tree, without, crossings, looked_at)) return std::nullopt;
+    const bool clear = cast_from(triangle, point, mesh_, tree_, without, crossings, looked_at);
+    looked_at_ += looked_at;
+    if (!clear) return std::nullopt;
     int winding = 0;
     for (const Crossing& crossing : crossings) winding += crossing.sign;
     return winding;
@@ -235,10 +238,10 @@ bool winds_outward(const PreparedMesh& mesh, const Patches& patches, const MeshT
             largest[patches.of[t]] = t;
         }
     }
+    const Winding winding(mesh, tree);
     for (std::size_t p = 0; p < patches.list.size(); ++p) {
         if (area[p] == 0) continue; // degenerate triangles bound nothing
-        if (winding_in_front(largest[p], middle_of(largest[p], mesh), mesh, tree, std::span(&largest[p], 1)) != 0)
-            return false;
+        if (winding.in_front_of(largest[p], middle_of(largest[p], mesh), std::span(&largest[p], 1)) != 0) return false;
     }
     return true;
 }

@@ -6,6 +6,7 @@
 #include "mesh/mesh_tree.h"
 #include "mesh/patches.h"
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -23,10 +24,24 @@ struct Turns {
 };
 Turns patches_to_turn(const PreparedMesh& mesh, const Patches& patches, const LazyTree& tree, Nesting nesting);
 
-/// The winding number of a closed mesh in front of a point of a triangle, and of others that lie on it there,
-/// `without`, among which it is; nothing where rounding could change it.
-std::optional<int> winding_in_front(std::uint32_t triangle, const Vec3& point, const PreparedMesh& mesh,
-                                    const MeshTree& tree, std::span<const std::uint32_t> without);
+/// Winding numbers of a closed mesh, by rays. From several threads.
+class Winding {
+public:
+    Winding(const PreparedMesh& mesh, const MeshTree& tree) : mesh_(mesh), tree_(tree) {}
+
+    /// In front of a point of a triangle, and of others that lie on it there, `without`, among which it is; nothing
+    /// where rounding could change it.
+    std::optional<int> in_front_of(std::uint32_t triangle, const Vec3& point,
+                                   std::span<const std::uint32_t> without) const;
+    /// All rays together met too many triangles, as those of a million shells in each other would: then no more are
+    /// cast.
+    bool is_too_much() const { return looked_at_ > (std::size_t{1} << 26) + 1024 * mesh_.triangles.size(); }
+
+private:
+    const PreparedMesh& mesh_;
+    const MeshTree& tree_;
+    mutable std::atomic<std::size_t> looked_at_ = 0;
+};
 
 /// For each patch that winds inward the innermost solid around it, of which it is a cavity; for others the patch
 /// itself. nullopt where it would take too long to find them. For meshes that patches_to_turn() had turned.

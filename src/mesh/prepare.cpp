@@ -93,132 +93,192 @@ bool has_border(std::span<const HalfEdge> edges) {
     return any;
 }
 
-/// Splits triangles at the T-junctions of borders, and reports how many; whether any. The pieces of a triangle have its
-/// index.
-bool stitch(PreparedMesh& prepared, std::span<const HalfEdge> edges, double within, Executor& executor) {
-    const Stitched stitched = stitch_borders(prepared.triangles, prepared.vertices, edges, within, executor);
-    std::vector<std::string>& repairs = prepared.report.repairs;
-    if (stitched.given_up)
-        repairs.push_back("left T-junctions as they are: too many vertices lie on borders of others");
-    if (stitched.at == 0) return false;
-    std::vector<std::uint32_t> index;
-    for (const std::uint32_t t : stitched.of) index.push_back(prepared.triangle_index[t]);
-    prepared.triangles = stitched.triangles;
-    prepared.triangle_index = std::move(index);
-    std::string text = "split " + counted(stitched.split, "triangle") + " at " + counted(stitched.at, "T-junction");
-    if (stitched.farthest > 0) text += ", up to " + text_of(stitched.farthest) + " m beside its edge";
-    repairs.push_back(text);
-    return true;
-}
+/// A mesh on its way, with what is known of it. Each step names in the report what it did.
+class Preparation {
+public:
+    Preparation(const Mesh& mesh, bool repair, std::uint32_t threads)
+        : prepared_(welded(mesh, repair)), executor_(threads_for(prepared_.triangles.size(), threads)),
+          edges_(sorted_half_edges(prepared_.triangles)) {}
 
-/// Makes the windings of each orientable patch agree with the majority, then turns closed patches as told. Returns
-/// whether any triangle was turned.
-bool mend_windings(PreparedMesh& prepared, const Patches& patches, const LazyTree& tree, Nesting nesting) {
-    std::vector<Triangle>& triangles = prepared.triangles;
-    const std::vector<Triangle> before(triangles);
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-        const Patch& patch = patches.list[patches.of[i]];
-        const bool fewer_against = 2 * std::uint64_t{patch.turned} <= patch.size;
-        if (patch.orientable && (patches.against[i] != 0) == fewer_against) std::swap(triangles[i][1], triangles[i][2]);
+    /// Joins vertices of borders that differ in their last digits, and splits triangles at T-junctions.
+    void close_borders(const Mesh& mesh) {
+        if (!has_border(edges_)) return;
+        const double within = border_tolerance(prepared_.vertices);
+        if (const auto joined = join_borders(mesh, prepared_, edges_, within)) {
+            prepared_ = welded(*joined, true);
+            edges_ = sorted_half_edges(prepared_.triangles);
+        }
+        const Stitched stitched = stitch_borders(prepared_.triangles, prepared_.vertices, edges_, within, executor_);
+        if (stitched.given_up) report("left T-junctions as they are: too many vertices lie on borders of others");
+        if (stitched.at == 0) return;
+        std::vector<std::uint32_t> index; // the pieces of a triangle have its own
+        for (const std::uint32_t t : stitched.of) index.push_back(prepared_.triangle_index[t]);
+        prepared_.triangles = stitched.triangles;
+        prepared_.triangle_index = std::move(index);
+        edges_ = sorted_half_edges(prepared_.triangles);
+        std::string text = "split " + counted(stitched.split, "triangle") + " at " + counted(stitched.at, "T-junction");
+        if (stitched.farthest > 0) text += ", up to " + text_of(stitched.farthest) + " m beside its edge";
+        report(text);
     }
-    const auto [contradicts, unknown] = patches_to_turn(prepared, patches, tree, nesting);
-    std::size_t mended = 0, turned_whole = 0;
-    for (std::size_t i = 0; i < triangles.size(); ++i) {
-        const std::uint32_t p = patches.of[i];
-        if (contradicts[p]) std::swap(triangles[i][1], triangles[i][2]);
-        if (patches.list[p].turned > 0 && triangles[i] != before[i]) ++mended;
-    }
-    for (std::size_t p = 0; p < patches.list.size(); ++p) {
-        if (contradicts[p] && patches.list[p].turned == 0) ++turned_whole;
-    }
-    if (mended > 0)
-        prepared.report.repairs.push_back("turned " + counted(mended, "triangle") + " to make windings agree");
-    if (turned_whole > 0) {
-        prepared.report.repairs.push_back(
-            "turned " + counted(turned_whole, "component") + " of " + std::to_string(patches.list.size())
-            + (nesting == Nesting::cavities ? " whose winding contradicts its nesting" : " that wound inward"));
-    }
-    if (unknown > 0)
-        prepared.report.repairs.push_back("left " + counted(unknown, "component")
-                                          + " as wound: too many lie in each other to tell which are cavities");
-    return triangles != before;
-}
 
-/// Spans the holes that `which` names, and reports them. The surface as it is then; nothing if there are no holes.
-std::optional<Surface> span_holes(PreparedMesh& prepared, std::span<const HalfEdge> edges, std::span<const Vec3> exact,
-                                  Holes which, Executor& executor) {
-    std::vector<Hole> holes = find_holes(prepared.triangles, exact, edges);
-    if (holes.empty()) return std::nullopt;
-    MeshReport& report = prepared.report;
-    const std::size_t first = prepared.triangles.size();
-    const auto append = [&] {
-        for (const Hole& hole : holes)
-            prepared.triangles.insert(prepared.triangles.end(), hole.triangles.begin(), hole.triangles.end());
-        report.holes = holes.size();
-        report.spanning = prepared.triangles.size() - first;
-    };
-    append();
-    std::optional<Surface> surface(std::in_place, prepared.triangles, exact, executor);
-    if (!is_solid(prepared, first, surface->tree(), executor)) {
-        prepared.triangles.resize(first);
-        const double small = 0.1 * length(box_of(exact).high - box_of(exact).low);
-        std::erase_if(holes, [&](const Hole& hole) {
-            return which != Holes::of_all || !(hole.flat || size_of(hole, exact) <= small);
-        });
+    /// When the vertices are all there.
+    void measure(const std::string& name) {
+        exact_ = snapped(prepared_.vertices);
+        surface_.emplace(prepared_.triangles, exact_, executor_);
+        if (surface_->is_empty()) throw InputError(name + ": no triangle has an area");
+        check_size(prepared_.vertices, name);
+        patches_ = find_patches(prepared_.triangles, edges_);
+    }
+
+    /// Makes the windings of each orientable patch agree with the majority, then turns closed patches as told.
+    void mend_windings(Nesting nesting) {
+        std::vector<Triangle>& triangles = prepared_.triangles;
+        const std::vector<Triangle> before(triangles);
+        for (std::size_t i = 0; i < triangles.size(); ++i) {
+            const Patch& patch = patches_.list[patches_.of[i]];
+            const bool fewer_against = 2 * std::uint64_t{patch.turned} <= patch.size;
+            if (patch.orientable && (patches_.against[i] != 0) == fewer_against)
+                std::swap(triangles[i][1], triangles[i][2]);
+        }
+        const auto tree = [&]() -> const MeshTree& { return surface_->tree(); };
+        const auto [contradicts, unknown] = patches_to_turn(prepared_, patches_, tree, nesting);
+        std::size_t mended = 0, turned_whole = 0;
+        for (std::size_t i = 0; i < triangles.size(); ++i) {
+            const std::uint32_t p = patches_.of[i];
+            if (contradicts[p]) std::swap(triangles[i][1], triangles[i][2]);
+            if (patches_.list[p].turned > 0 && triangles[i] != before[i]) ++mended;
+        }
+        for (std::size_t p = 0; p < patches_.list.size(); ++p) {
+            if (contradicts[p] && patches_.list[p].turned == 0) ++turned_whole;
+        }
+        if (mended > 0) report("turned " + counted(mended, "triangle") + " to make windings agree");
+        if (turned_whole > 0)
+            report("turned " + counted(turned_whole, "component") + " of " + std::to_string(patches_.list.size())
+                   + (nesting == Nesting::cavities ? " whose winding contradicts its nesting" : " that wound inward"));
+        if (unknown > 0)
+            report("left " + counted(unknown, "component")
+                   + " as wound: too many lie in each other to tell which are cavities");
+        if (triangles != before) edges_ = sorted_half_edges(triangles);
+    }
+
+    /// Spans the holes that `which` names.
+    void span_holes(Holes which) {
+        std::vector<Hole> holes = find_holes(prepared_.triangles, exact_, edges_);
+        if (holes.empty()) return;
+        MeshReport& found = prepared_.report;
+        const std::size_t first = prepared_.triangles.size(), number = found.file_triangles;
+        const auto append = [&] {
+            prepared_.triangles.resize(first);
+            for (const Hole& hole : holes)
+                prepared_.triangles.insert(prepared_.triangles.end(), hole.triangles.begin(), hole.triangles.end());
+            surface_.emplace(prepared_.triangles, exact_, executor_);
+        };
         append();
-        surface.emplace(prepared.triangles, exact, executor);
-        if (holes.empty()) return surface;
+        if (!is_solid(prepared_, first, surface_->tree(), executor_)) {
+            const double small = 0.1 * length(box_of(exact_).high - box_of(exact_).low);
+            std::erase_if(holes, [&](const Hole& hole) {
+                return which != Holes::of_all || !(hole.flat || size_of(hole, exact_) <= small);
+            });
+            append();
+        }
+        if (holes.empty()) return;
+        found.holes = holes.size();
+        found.spanning = prepared_.triangles.size() - first;
+        for (std::size_t i = 0; i < found.spanning; ++i)
+            prepared_.triangle_index.push_back(static_cast<std::uint32_t>(number + i));
+        find_edges();
+        report("spanned " + counted(holes.size(), "hole") + " with " + counted(found.spanning, "triangle")
+               + ", numbered from " + std::to_string(number) + " on");
+        constexpr std::size_t most_named = 20;
+        for (std::size_t i = 0; i < std::min(holes.size(), most_named); ++i)
+            report("spanned a " + text_of(holes[i], exact_));
     }
-    const std::size_t number = report.file_triangles;
-    for (std::size_t i = 0; i < report.spanning; ++i)
-        prepared.triangle_index.push_back(static_cast<std::uint32_t>(number + i));
-    report.repairs.push_back("spanned " + counted(holes.size(), "hole") + " with "
-                             + counted(report.spanning, "triangle") + ", numbered from " + std::to_string(number)
-                             + " on");
-    constexpr std::size_t most_named = 20;
-    for (std::size_t i = 0; i < std::min(holes.size(), most_named); ++i)
-        report.repairs.push_back("spanned a " + text_of(holes[i], exact));
-    return surface;
-}
 
-/// Replaces a mesh by the union of its solids; reports that, the first time.
-void take(PreparedMesh& prepared, const United& united, bool first) {
-    std::vector<Vec3> places(united.vertices);
-    for (Vec3& p : places) p = p + Vec3{};
-    const std::vector<std::uint32_t> lowest = lowest_equal(places);
-    constexpr std::uint32_t none = 0xffffffffu;
-    std::vector<std::uint32_t> number(places.size(), none);
-    std::vector<Triangle> triangles;
-    std::vector<std::uint32_t> triangle_index;
-    for (std::size_t i = 0; i < united.triangles.size(); ++i) {
-        const auto [a, b, c] = united.triangles[i];
-        const Triangle t{lowest[a], lowest[b], lowest[c]};
-        if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue; // rounded away
-        for (const std::uint32_t v : t) number[v] = 0;
-        triangles.push_back(t);
-        triangle_index.push_back(prepared.triangle_index[united.of[i]]);
+    /// Makes one solid of parts that lie in each other. Whether the mesh is known to be one.
+    bool unite_parts(const std::string& name) {
+        fill_report(prepared_, edges_);
+        const MeshReport& found = prepared_.report;
+        if (!found.closed || !found.oriented) return false;
+        // What is rounded may cross itself again: then what is nearer than doubles can tell is drawn together.
+        const double near = 1e-12 * length(found.box_max - found.box_min);
+        constexpr int rounds = 5;
+        for (int round = 0; round < rounds; ++round) {
+            const United united = unite(prepared_, patches_, exact_, surface_->tree(), round > 0 ? near : 0, executor_);
+            if (united.done == United::Done::nothing) return true;
+            if (united.done == United::Done::empty) return false;
+            if (united.done == United::Done::given_up) break;
+            take(united, round == 0);
+            exact_ = snapped(prepared_.vertices);
+            surface_.emplace(prepared_.triangles, exact_, executor_);
+            if (surface_->is_empty()) throw InputError(name + ": nothing is left of parts that lie in each other");
+            find_edges();
+        }
+        report("left parts that cross as they are: too many, or too near");
+        return false;
     }
-    const std::size_t given = prepared.vertices.size(), file_vertices = prepared.report.file_vertices;
-    std::size_t next = std::max<std::size_t>(file_vertices, prepared.vertex_index.back() + std::size_t{1});
-    std::vector<Vec3> vertices;
-    std::vector<std::uint32_t> vertex_index;
-    for (std::size_t v = 0; v < number.size(); ++v) {
-        if (number[v] == none) continue;
-        number[v] = static_cast<std::uint32_t>(vertices.size());
-        vertices.push_back(united.vertices[v]);
-        vertex_index.push_back(v < given ? prepared.vertex_index[v] : static_cast<std::uint32_t>(next++));
+
+    PreparedMesh finish(bool is_solid, Check check) {
+        fill_report(prepared_, edges_);
+        prepared_.report.outward = is_solid;
+        prepared_.report.checked = is_solid;
+        if (!is_solid && check == Check::full) check_surface(prepared_, patches_, exact_, surface_->tree(), executor_);
+        return std::move(prepared_);
     }
-    for (Triangle& t : triangles)
-        for (std::uint32_t& v : t) v = number[v];
-    prepared.vertices = std::move(vertices);
-    prepared.vertex_index = std::move(vertex_index);
-    prepared.triangles = std::move(triangles);
-    prepared.triangle_index = std::move(triangle_index);
-    std::string text = "united parts that lie in each other: split " + counted(united.split, "triangle") + ", dropped "
-                       + counted(united.buried, "buried one");
-    if (next > file_vertices) text += "; vertices from " + std::to_string(file_vertices) + " on are where they cross";
-    if (first) prepared.report.repairs.push_back(text);
-}
+
+private:
+    void report(std::string text) { prepared_.report.repairs.push_back(std::move(text)); }
+
+    void find_edges() {
+        edges_ = sorted_half_edges(prepared_.triangles);
+        patches_ = find_patches(prepared_.triangles, edges_);
+    }
+
+    /// The union instead of the mesh; what was rounded to one place is one vertex.
+    void take(const United& united, bool tell) {
+        std::vector<Vec3> places(united.vertices);
+        for (Vec3& p : places) p = p + Vec3{}; // turns -0 into 0
+        const std::vector<std::uint32_t> lowest = lowest_equal(places);
+        constexpr std::uint32_t none = 0xffffffffu;
+        std::vector<std::uint32_t> number(places.size(), none), triangle_index, vertex_index;
+        std::vector<Triangle> triangles;
+        for (std::size_t i = 0; i < united.triangles.size(); ++i) {
+            const auto [a, b, c] = united.triangles[i];
+            const Triangle t{lowest[a], lowest[b], lowest[c]};
+            if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
+            for (const std::uint32_t v : t) number[v] = 0;
+            triangles.push_back(t);
+            triangle_index.push_back(prepared_.triangle_index[united.of[i]]);
+        }
+        const std::size_t given = prepared_.vertices.size(), file_vertices = prepared_.report.file_vertices;
+        std::size_t next = std::max<std::size_t>(file_vertices, prepared_.vertex_index.back() + std::size_t{1});
+        std::vector<Vec3> vertices;
+        for (std::size_t v = 0; v < number.size(); ++v) {
+            if (number[v] == none) continue;
+            number[v] = static_cast<std::uint32_t>(vertices.size());
+            vertices.push_back(united.vertices[v]);
+            vertex_index.push_back(v < given ? prepared_.vertex_index[v] : static_cast<std::uint32_t>(next++));
+        }
+        for (Triangle& t : triangles)
+            for (std::uint32_t& v : t) v = number[v];
+        prepared_.vertices = std::move(vertices);
+        prepared_.vertex_index = std::move(vertex_index);
+        prepared_.triangles = std::move(triangles);
+        prepared_.triangle_index = std::move(triangle_index);
+        if (!tell) return;
+        std::string text = "united parts that lie in each other: split " + counted(united.split, "triangle")
+                           + ", dropped " + counted(united.buried, "buried one");
+        if (next > file_vertices)
+            text += "; vertices from " + std::to_string(file_vertices) + " on are where they cross";
+        report(text);
+    }
+
+    PreparedMesh prepared_;
+    Executor executor_;
+    std::vector<HalfEdge> edges_;
+    std::vector<Vec3> exact_;        ///< vertices, snapped
+    std::optional<Surface> surface_; ///< of the triangles as they are
+    Patches patches_;
+};
 
 } // namespace
 
@@ -228,61 +288,13 @@ PreparedMesh prepare_mesh(const Mesh& mesh, const PrepareOptions& options) {
     check_mesh(mesh, name);
     check_reach(mesh, name);
     const bool repair = options.repair == Repair::allowed;
-    PreparedMesh prepared = welded(mesh, repair);
-    Executor executor(threads_for(prepared.triangles.size(), options.threads));
-    std::vector<HalfEdge> edges = sorted_half_edges(prepared.triangles);
-    if (repair && has_border(edges)) {
-        const double within = border_tolerance(prepared.vertices);
-        if (const auto joined = join_borders(mesh, prepared, edges, within)) {
-            prepared = welded(*joined, true);
-            edges = sorted_half_edges(prepared.triangles);
-        }
-        if (stitch(prepared, edges, within, executor)) edges = sorted_half_edges(prepared.triangles);
-    }
-
-    std::vector<Vec3> exact = snapped(prepared.vertices);
-    std::optional<Surface> surface(std::in_place, prepared.triangles, exact, executor);
-    if (surface->is_empty()) throw InputError(name + ": no triangle has an area");
-    check_size(prepared.vertices, name);
-    Patches patches = find_patches(prepared.triangles, edges);
-    if (repair) {
-        const auto tree = [&]() -> const MeshTree& { return surface->tree(); };
-        if (mend_windings(prepared, patches, tree, options.nesting)) edges = sorted_half_edges(prepared.triangles);
-    }
-    if (repair && options.holes != Holes::none) {
-        if (std::optional<Surface> spanned = span_holes(prepared, edges, exact, options.holes, executor)) {
-            surface.emplace(std::move(*spanned));
-            edges = sorted_half_edges(prepared.triangles);
-            patches = find_patches(prepared.triangles, edges);
-        }
-    }
-    fill_report(prepared, edges);
-    prepared.report.checked = options.check == Check::full;
-    if (repair && options.overlaps == Overlaps::unite && prepared.report.closed && prepared.report.oriented) {
-        // What is rounded may cross itself again: then what is nearer than doubles can tell is drawn together.
-        const double near = 1e-12 * length(prepared.report.box_max - prepared.report.box_min);
-        for (int round = 0; round < 5; ++round) {
-            const United united = unite(prepared, patches, exact, surface->tree(), round > 0 ? near : 0, executor);
-            if (united.done == United::Done::nothing) {
-                prepared.report.outward = prepared.report.checked = true;
-                return prepared;
-            }
-            if (united.done == United::Done::empty) break;
-            if (united.done == United::Done::given_up) {
-                prepared.report.repairs.emplace_back("left parts that cross as they are: too many, or too near");
-                break;
-            }
-            take(prepared, united, round == 0);
-            exact = snapped(prepared.vertices);
-            surface.emplace(prepared.triangles, exact, executor);
-            if (surface->is_empty()) throw InputError(name + ": nothing is left of parts that lie in each other");
-            edges = sorted_half_edges(prepared.triangles);
-            patches = find_patches(prepared.triangles, edges);
-            fill_report(prepared, edges);
-        }
-    }
-    if (options.check == Check::full) check_surface(prepared, patches, exact, surface->tree(), executor);
-    return prepared;
+    Preparation preparation(mesh, repair, options.threads);
+    if (repair) preparation.close_borders(mesh);
+    preparation.measure(name);
+    if (repair) preparation.mend_windings(options.nesting);
+    if (repair && options.holes != Holes::none) preparation.span_holes(options.holes);
+    const bool is_solid = repair && options.overlaps == Overlaps::unite && preparation.unite_parts(name);
+    return preparation.finish(is_solid, options.check);
 }
 
 MeshReport measured_report(const PreparedMesh& mesh, Executor& executor) {

@@ -241,7 +241,7 @@ class Classifier {
 public:
     Classifier(const PreparedMesh& mesh, const United& cut, const Patches& patches, const MeshTree& tree,
                std::span<const Pair> pairs, std::span<const Vec3> exact)
-        : mesh_(mesh), cut_(cut), tree_(tree), by_patch_(patches.list.size()) {
+        : mesh_(mesh), cut_(cut), winding_(mesh, tree), by_patch_(patches.list.size()) {
         for (const auto& [i, k] : pairs) {
             const auto flat = [&](std::uint32_t t) {
                 const auto [a, b, c] = mesh.triangles[i];
@@ -255,6 +255,8 @@ public:
         }
         for (std::uint32_t p = 0; p < cut.triangles.size(); ++p) by_patch_[patches.of[p]].push_back(p);
     }
+
+    bool is_too_much() const { return winding_.is_too_much(); }
 
     enum class Answer : char { unclear, stays, goes };
     Answer of(std::uint32_t patch) const {
@@ -294,7 +296,7 @@ private:
                 behind += same ? 1 : -1;
                 first = first && !(same && other < own);
             }
-        const std::optional<int> in_front = winding_in_front(own, point, mesh_, tree_, stack);
+        const std::optional<int> in_front = winding_.in_front_of(own, point, stack);
         if (!in_front) return Answer::unclear;
         return first && *in_front < 1 && *in_front + behind >= 1 ? Answer::stays : Answer::goes;
     }
@@ -321,7 +323,7 @@ private:
 
     const PreparedMesh& mesh_;
     const United& cut_;
-    const MeshTree& tree_;
+    Winding winding_;
     std::vector<std::vector<std::uint32_t>> by_patch_;
     std::unordered_map<std::uint32_t, std::vector<std::uint32_t>> beside_; ///< triangles in the plane of another
 };
@@ -377,7 +379,7 @@ United unite(const PreparedMesh& mesh, const Patches& whole, std::span<const Vec
     const Classifier classifier(mesh, cut, patches, tree, *pairs, exact);
     Answers answers(patches.list.size());
     executor.each(answers.size(), 1, [&](std::uint32_t p) { answers[p] = classifier.of(p); });
-    if (!close(patches, edges, answers)) return given_up();
+    if (classifier.is_too_much() || !close(patches, edges, answers)) return given_up();
 
     if (std::ranges::count(answers, Classifier::Answer::stays) == 0) return {.done = United::Done::empty};
     United united{.done = United::Done::union_, .vertices = std::move(cut.vertices)};
