@@ -67,8 +67,8 @@ public:
     /// How far the ray from a vertex along its inward normal travels inside its own mesh, metres: t_max of its rays.
     /// +inf where it never leaves, 0 where it points out of the mesh at once.
     std::span<const float> exit_distances() const noexcept;
-    /// Triangle across each edge (0-1, 1-2, 2-0), or no_triangle at a border; the lowest other index where several
-    /// meet.
+    /// Triangle across each edge (0-1, 1-2, 2-0), or no_triangle at a border. Where several meet, as where solids touch
+    /// in an edge, the one across the solid; where their windings leave none, the lowest other index.
     std::span<const std::array<std::uint32_t, 3>> neighbours() const noexcept;
     /// The lowest triangle at each vertex, or no_triangle where none is.
     std::span<const std::uint32_t> vertex_triangles() const noexcept;

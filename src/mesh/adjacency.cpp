@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesh/adjacency.h"
 
+#include "mesh/vector.h"
+
 #include <algorithm>
+#include <cmath>
+#include <tuple>
 
 namespace raycontact {
 
@@ -34,7 +38,42 @@ std::vector<HalfEdge> sorted_half_edges(std::span<const Triangle> triangles) {
     return edges;
 }
 
-std::vector<Triangle> triangle_neighbours(std::span<const Triangle> triangles) {
+namespace {
+
+/// Pairs the sides of an edge that bound one solid. About the edge, as a right hand turns, each solid begins with a
+/// triangle that runs against the edge and ends with one that runs along it.
+void pair_by_angle(std::span<const HalfEdge> sides, std::span<const Triangle> triangles, std::span<const Vec3> vertices,
+                   std::vector<Triangle>& neighbours) {
+    const Vec3 &from = vertices[sides[0].lo], along = unit(vertices[sides[0].hi] - from);
+    const auto tip = [&](const HalfEdge& side) {
+        return vertices[triangles[side.triangle()][(side.corner % 3 + 2) % 3]] - from;
+    };
+    const Vec3 first = cross(cross(along, tip(sides[0])), along), second = cross(along, first);
+    // Angle, whether it runs against the edge, and corner: of two that lie on each other the one that ends a solid
+    // first.
+    using Side = std::tuple<double, bool, std::uint32_t>;
+    std::vector<Side> around;
+    for (const HalfEdge& side : sides)
+        around.emplace_back(std::atan2(dot(tip(side), second), dot(tip(side), first)), !side.forward, side.corner);
+    std::ranges::sort(around);
+    // Twice around, for a solid that begins last and ends first.
+    const std::size_t count = around.size();
+    std::vector<char> ended(count, 0);
+    std::vector<std::uint32_t> begun; // corners
+    for (std::size_t i = 0; i < 2 * count; ++i) {
+        const auto& [angle, backward, corner] = around[i % count];
+        if (backward && i < count) begun.push_back(corner);
+        if (backward || ended[i % count] != 0 || begun.empty()) continue;
+        neighbours[corner / 3][corner % 3] = begun.back() / 3;
+        neighbours[begun.back() / 3][begun.back() % 3] = corner / 3;
+        begun.pop_back();
+        ended[i % count] = 1;
+    }
+}
+
+} // namespace
+
+std::vector<Triangle> triangle_neighbours(std::span<const Triangle> triangles, std::span<const Vec3> vertices) {
     constexpr std::uint32_t none = 0xffffffffu;
     std::vector<Triangle> neighbours(triangles.size(), Triangle{none, none, none});
     for_each_edge(sorted_half_edges(triangles), [&](std::span<const HalfEdge> sides) {
@@ -44,6 +83,7 @@ std::vector<Triangle> triangle_neighbours(std::span<const Triangle> triangles) {
         const std::uint32_t second = other == sides.end() ? none : other->triangle();
         for (const HalfEdge& side : sides)
             neighbours[side.triangle()][side.corner % 3] = side.triangle() == lowest ? second : lowest;
+        if (sides.size() > 2) pair_by_angle(sides, triangles, vertices, neighbours);
     });
     return neighbours;
 }

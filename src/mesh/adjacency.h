@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <raycontact/pose.h>
+
 #include "interruption.h"
 
 #include <array>
@@ -37,8 +39,9 @@ void for_each_edge(std::span<const HalfEdge> edges, Visit&& visit) {
     }
 }
 
-/// Triangle across each edge (0-1, 1-2, 2-0): 0xffffffff at a border, the lowest other index where several meet.
-std::vector<Triangle> triangle_neighbours(std::span<const Triangle> triangles);
+/// Triangle across each edge (0-1, 1-2, 2-0): 0xffffffff at a border. Where several meet, solids touch in an edge: then
+/// the one across the solid, by the angles around the edge; where windings leave none, the lowest other index.
+std::vector<Triangle> triangle_neighbours(std::span<const Triangle> triangles, std::span<const Vec3> vertices);
 
 /// The triangles around each vertex: of(v) is ascending and names each triangle once.
 struct VertexTriangles {

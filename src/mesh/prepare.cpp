@@ -130,35 +130,36 @@ public:
         patches_ = find_patches(prepared_.triangles, edges_);
     }
 
-    /// Makes the windings of each orientable patch agree with the majority, then turns closed patches as told.
-    void mend_windings(Nesting nesting) {
-        std::vector<Triangle>& triangles = prepared_.triangles;
-        const std::vector<Triangle> before(triangles);
-        for (std::size_t i = 0; i < triangles.size(); ++i) {
+    /// Makes the windings of each orientable patch agree with the majority.
+    void agree_windings() {
+        std::size_t turned = 0;
+        for (std::size_t i = 0; i < prepared_.triangles.size(); ++i) {
             const Patch& patch = patches_.list[patches_.of[i]];
             const bool fewer_against = 2 * std::uint64_t{patch.turned} <= patch.size;
-            if (patch.orientable && (patches_.against[i] != 0) == fewer_against)
-                std::swap(triangles[i][1], triangles[i][2]);
+            if (!patch.orientable || (patches_.against[i] != 0) != fewer_against) continue;
+            std::swap(prepared_.triangles[i][1], prepared_.triangles[i][2]);
+            ++turned;
         }
+        if (turned == 0) return;
+        report("turned " + counted(turned, "triangle") + " to make windings agree");
+        find_edges();
+    }
+
+    /// Turns closed patches as told.
+    void turn_components(Nesting nesting) {
         const auto tree = [&]() -> const MeshTree& { return surface_->tree(); };
         const auto [contradicts, unknown] = patches_to_turn(prepared_, patches_, tree, nesting);
-        std::size_t mended = 0, turned_whole = 0;
-        for (std::size_t i = 0; i < triangles.size(); ++i) {
-            const std::uint32_t p = patches_.of[i];
-            if (contradicts[p]) std::swap(triangles[i][1], triangles[i][2]);
-            if (patches_.list[p].turned > 0 && triangles[i] != before[i]) ++mended;
-        }
-        for (std::size_t p = 0; p < patches_.list.size(); ++p) {
-            if (contradicts[p] && patches_.list[p].turned == 0) ++turned_whole;
-        }
-        if (mended > 0) report("turned " + counted(mended, "triangle") + " to make windings agree");
-        if (turned_whole > 0)
-            report("turned " + counted(turned_whole, "component") + " of " + std::to_string(patches_.list.size())
+        for (std::size_t i = 0; i < prepared_.triangles.size(); ++i)
+            if (contradicts[patches_.of[i]]) std::swap(prepared_.triangles[i][1], prepared_.triangles[i][2]);
+        if (const auto turned = std::ranges::count(contradicts, 1); turned > 0) {
+            report("turned " + counted(static_cast<std::size_t>(turned), "component") + " of "
+                   + std::to_string(patches_.list.size())
                    + (nesting == Nesting::cavities ? " whose winding contradicts its nesting" : " that wound inward"));
+            find_edges();
+        }
         if (unknown > 0)
             report("left " + counted(unknown, "component")
                    + " as wound: too many lie in each other to tell which are cavities");
-        if (triangles != before) edges_ = sorted_half_edges(triangles);
     }
 
     /// Spans the holes that `which` names.
@@ -291,8 +292,9 @@ PreparedMesh prepare_mesh(const Mesh& mesh, const PrepareOptions& options) {
     Preparation preparation(mesh, repair, options.threads);
     if (repair) preparation.close_borders(mesh);
     preparation.measure(name);
-    if (repair) preparation.mend_windings(options.nesting);
+    if (repair) preparation.agree_windings();
     if (repair && options.holes != Holes::none) preparation.span_holes(options.holes);
+    if (repair) preparation.turn_components(options.nesting); // holes closed: else a cavity would be outermost
     const bool is_solid = repair && options.overlaps == Overlaps::unite && preparation.unite_parts(name);
     return preparation.finish(is_solid, options.check);
 }

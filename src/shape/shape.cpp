@@ -120,7 +120,7 @@ std::shared_ptr<const Shape> Shape::make(PreparedMesh mesh, std::uint32_t thread
     std::vector<Vec3> normals = face_normals(shape);
     if (std::all_of(normals.begin(), normals.end(), [](const Vec3& n) { return n == Vec3{}; }))
         throw InputError("mesh '" + shape.mesh.name + "': no triangle with an area; nothing to collide");
-    shape.neighbours = triangle_neighbours(shape.mesh.triangles);
+    shape.neighbours = triangle_neighbours(shape.mesh.triangles, shape.mesh.vertices);
     shape.faces.reserve(normals.size());
     shape.face_normals.reserve(normals.size());
     for (const auto& [a, b, c] : shape.neighbours) shape.faces.push_back({NONE, {a, b, c}});

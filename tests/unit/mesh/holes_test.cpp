@@ -253,6 +253,19 @@ TEST(Holes, TheWindingNumberSaysWhatIsASolid) {
     EXPECT_GT(sheets, 10u);
 }
 
+// While the hull was open, nothing seemed to be around its cavity.
+TEST(Holes, ACavityStaysOneWhereTheHullHasHoles) {
+    Mesh cavity = torus(40, 20, 1, 0.2), whole = torus(40, 20, 1, 0.4);
+    turn_over(cavity);
+    Mesh mesh = without_some(whole, 6, 8);
+    append(mesh, cavity);
+    append(whole, cavity);
+    const MeshReport report = prepare_mesh(mesh).report;
+    EXPECT_EQ(report.holes, 6u);
+    EXPECT_TRUE(report.outward);
+    EXPECT_NEAR(report.volume, prepare_mesh(whole).report.volume, 1e-13);
+}
+
 TEST(Holes, SheetsStaySheets) {
     Mesh open_box = box();
     open_box.triangles.resize(10); // without its top

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <random>
 
 using namespace raycontact;
@@ -24,14 +25,42 @@ using Triangles = std::vector<std::array<std::uint32_t, 3>>;
 TEST(Adjacency, BorderNeighbourAndManyAtOneEdge) {
     constexpr std::uint32_t none = 0xffffffffu;
     const Triangles two{{0, 1, 2}, {2, 1, 3}};
-    EXPECT_EQ(triangle_neighbours(two), (Triangles{{none, 1, none}, {0, none, none}}));
+    const std::vector<Vec3> at{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, -1, 0}, {0, 0, -1}};
+    EXPECT_EQ(triangle_neighbours(two, at), (Triangles{{none, 1, none}, {0, none, none}}));
     const Triangles three{{0, 1, 2}, {0, 1, 3}, {1, 0, 4}, {5, 5, 0}};
-    EXPECT_EQ(triangle_neighbours(three),
-              (Triangles{{1, none, none}, {0, none, none}, {0, none, none}, {none, none, none}}));
+    // The solid behind 0 and 2; what is behind 1 has no other side.
+    EXPECT_EQ(triangle_neighbours(three, at),
+              (Triangles{{2, none, none}, {0, none, none}, {0, none, none}, {none, none, none}}));
     const VertexTriangles around = vertex_triangles(three, 6);
     EXPECT_EQ(std::vector<std::uint32_t>(around.of(0).begin(), around.of(0).end()),
               (std::vector<std::uint32_t>{0, 1, 2, 3}));
     EXPECT_EQ(std::vector<std::uint32_t>(around.of(5).begin(), around.of(5).end()), (std::vector<std::uint32_t>{3}));
+}
+
+// Boxes that touch in an edge, in whatever order: across an edge lies a face of the same box.
+TEST(Adjacency, SolidsThatTouchInAnEdgeAreSolidsOfTheirOwn) {
+    std::mt19937 random(3);
+    for (int turn = 0; turn < 50; ++turn) {
+        Mesh mesh{"boxes", {}, {}};
+        append_box(mesh, {0, 0, 0}, {1, 1, 1});
+        append_box(mesh, {1, 1, 0}, {2, 2, 1});
+        if (turn % 2 == 0) append_box(mesh, {1, 0, 1}, {2, 1, 2});
+        std::vector<std::uint32_t> order(mesh.triangles.size());
+        std::iota(order.begin(), order.end(), 0u);
+        std::ranges::shuffle(order, random);
+        Triangles shuffled;
+        for (const std::uint32_t t : order) shuffled.push_back(mesh.triangles[t]);
+        mesh.triangles = shuffled;
+        const PreparedMesh prepared = prepare_mesh(mesh);
+        ASSERT_FALSE(prepared.report.manifold);
+        ASSERT_TRUE(prepared.report.outward);
+        const auto neighbours = triangle_neighbours(prepared.triangles, prepared.vertices);
+        for (std::uint32_t t = 0; t < neighbours.size(); ++t)
+            for (std::size_t k = 0; k < 3; ++k) {
+                EXPECT_EQ(order[t] / 12, order[neighbours[t][k]] / 12) << t;
+                EXPECT_EQ(std::ranges::count(neighbours[neighbours[t][k]], t), 1);
+            }
+    }
 }
 
 TEST(Prepare, BoxIsAsItShouldBe) {
