@@ -19,6 +19,7 @@
 #include <cstdio>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -141,11 +142,51 @@ void compare_meshes(const char* kind, std::uint32_t triangles, std::size_t pair_
     }
 }
 
+/// What a signed distance takes: of points at random in the mesh's box, of a grid there, and of single ones.
+void measure_points(const char* kind, std::uint32_t triangles, std::size_t rounds) {
+    const auto shape = Shape::make(scenes::scene_model(kind, triangles).mesh);
+    const Vec3 low = shape->box_min(), high = shape->box_max();
+    constexpr int side = 40;
+    std::vector<Vec3> anywhere, grid;
+    reference::Random random(2);
+    for (int i = 0; i < side * side * side; ++i) {
+        const auto at = [&](int k) { return (k + 0.5) / side; };
+        const auto place = [&](double x, double y, double z) {
+            return Vec3{low.x + x * (high.x - low.x), low.y + y * (high.y - low.y), low.z + z * (high.z - low.z)};
+        };
+        anywhere.push_back(place(random.uniform(0, 1), random.uniform(0, 1), random.uniform(0, 1)));
+        grid.push_back(place(at(i % side), at(i / side % side), at(i / side / side)));
+    }
+    const auto ask = [&](const char* name, const std::vector<Vec3>& points, auto&& query) {
+        std::vector<double> microseconds;
+        for (std::size_t round = 0; round < rounds; ++round) {
+            const double begin = peers::now().cpu;
+            query(points);
+            microseconds.push_back((peers::now().cpu - begin) / double(points.size()));
+        }
+        const std::string what = std::string(kind) + " " + std::to_string(triangles);
+        std::printf("%-34s %-28s %9.2f us\n", what.c_str(), name, peers::median(microseconds));
+    };
+    const auto together = [&](std::span<const Vec3> points) {
+        static_cast<void>(signed_distance(*shape, {}, points, 1));
+    };
+    ask("signed_distance, anywhere", anywhere, together);
+    ask("signed_distance, grid", grid, together);
+    ask("closest_point, contains", std::vector(anywhere.begin(), anywhere.begin() + 4000),
+        [&](std::span<const Vec3> points) {
+            for (const Vec3& p : points) {
+                static_cast<void>(closest_point(*shape, {}, p));
+                static_cast<void>(contains(*shape, p));
+            }
+        });
+}
+
 } // namespace
 
 void add_queries(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
-        "queries", "intersects() and distance() beside FCL on the same poses, by turns, with ratios");
+        "queries",
+        "intersects() and distance() beside FCL on the same poses, by turns, with ratios; signed_distance()");
     struct Options {
         std::size_t rounds = 7, pairs = 200;
     };
@@ -156,6 +197,8 @@ void add_queries(CLI::App& app) {
         for (const std::uint32_t triangles : {1000u, 20000u})
             for (const char* kind : {"sphere", "gear"})
                 compare_meshes(kind, triangles, options->pairs, options->rounds);
+        for (const std::uint32_t triangles : {1000u, 10000u})
+            for (const char* kind : {"sphere", "gear"}) measure_points(kind, triangles, options->rounds);
     });
 }
 

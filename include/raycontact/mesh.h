@@ -86,16 +86,16 @@ enum class Repair {
     allowed, ///< drop degenerate and duplicate triangles, which never opens a closed edge (where a degenerate one joins
              ///< a corner with the side of a triangle on which it lies, that triangle is split at the corner), and one
              ///< of two closed surfaces back to back; stitch T-junctions (docs/conventions.md, T-junctions); make
-             ///< windings agree; turn components as Nesting has it; span holes as Holes has it
+             ///< windings agree; span holes as Holes, turn components as Nesting, unite parts as Overlaps has it
     as_is,   ///< change nothing; connectivity is still found by exact position
 };
 
 /// Which way a repair lets closed components wind. A component is outermost if it is in no other closed one.
 enum class Nesting {
-    as_wound, ///< outermost ones outward; those inside others stay as the file has them: a solid of its own in a solid
-              ///< (the winding number is 2 there, and the volumes add up), or a cavity
+    as_wound, ///< outermost ones outward; those inside others stay as the file has them: a solid in a solid, which
+              ///< Overlaps unites, or a cavity
     cavities, ///< by turns: outward, in there a cavity, in there outward, ... The winding number is 0 or 1 everywhere
-    solids,   ///< all outward, each a solid of its own: undoes cavities
+    solids,   ///< all outward: undoes cavities
 };
 
 /// Which holes prepare_mesh() spans with triangles of its own, where it may repair. A hole is a closed line of border
@@ -121,9 +121,9 @@ enum class Overlaps {
 /// How much of a mesh prepare_mesh looks at.
 enum class Check {
     full,
-    /// Of a mesh that is not united (Overlaps) neither self-intersections nor which way the whole winds, a third of what
-    /// it takes to make a shape: for one that is needed at once. Shape::prepare() looks for them, since the grids that
-    /// it makes need them.
+    /// Of a mesh that is not united (Overlaps) neither self-intersections nor which way the whole winds, a third of
+    /// what it takes to make a shape: for one that is needed at once. Shape::prepare() looks for them, since the grids
+    /// that it makes need them.
     topology,
 };
 
@@ -132,7 +132,8 @@ struct PreparedMesh {
     std::string name;                                    ///< for messages
     std::vector<Vec3> vertices;                          ///< distinct positions, in order of their lowest file index
     std::vector<std::array<std::uint32_t, 3>> triangles; ///< indices into vertices
-    std::vector<std::uint32_t> vertex_index;   ///< file index (the lowest, where several were welded) of each vertex
+    std::vector<std::uint32_t> vertex_index;   ///< file index (the lowest, where several were welded) of each vertex,
+                                               ///< ascending; from report.file_vertices on: of those where parts cross
     std::vector<std::uint32_t> triangle_index; ///< file index of each triangle, ascending; of pieces that of the whole;
                                                ///< from report.file_triangles on: of those that span holes
     MeshReport report;                         ///< what it is, and what was repaired

@@ -206,7 +206,7 @@ public:
         for (int round = 0; round < rounds; ++round) {
             const United united = unite(prepared_, patches_, exact_, surface_->tree(), round > 0 ? near : 0, executor_);
             if (united.done == United::Done::nothing) return true;
-            if (united.done == United::Done::empty) return false;
+            if (united.done == United::Done::stays) return false;
             if (united.done == United::Done::given_up) break;
             take(united, round == 0);
             exact_ = snapped(prepared_.vertices);

@@ -262,13 +262,24 @@ public:
     Answer of(std::uint32_t patch) const {
         std::vector<std::pair<double, std::uint32_t>> largest;
         for (const std::uint32_t p : by_patch_[patch]) largest.emplace_back(-area_of(p), p);
-        constexpr std::size_t most = 16;
+        constexpr std::size_t most = 64; // some of a patch may lie so near to others that rays cannot tell
         const auto end = largest.begin() + static_cast<std::ptrdiff_t>(std::min(most, largest.size()));
         std::partial_sort(largest.begin(), end, largest.end());
         for (auto at = largest.begin(); at != end; ++at)
             if (const Answer answer = of_piece(at->second); answer != Answer::unclear) return answer;
         return largest.empty() || largest[0].first == 0 ? Answer::stays
                                                         : Answer::unclear; // without area it bounds nothing
+    }
+
+    /// The share of the area that has this answer.
+    double share_of(Answer which, std::span<const Answer> answers) const {
+        double own = 0, all = 0;
+        for (std::size_t patch = 0; patch < answers.size(); ++patch)
+            for (const std::uint32_t piece : by_patch_[patch]) {
+                all += area_of(piece);
+                own += answers[patch] == which ? area_of(piece) : 0;
+            }
+        return all > 0 ? own / all : 0;
     }
 
 private:
@@ -370,6 +381,7 @@ United unite(const PreparedMesh& mesh, const Patches& whole, std::span<const Vec
     const auto pairs = crossing_pairs(mesh, exact, tree, executor, 4 * mesh.triangles.size() + 20'000);
     if (!pairs) return given_up();
     if (pairs->empty() && winds_outward(mesh, whole, tree)) return {};
+    if (pairs->empty() && tolerance > 0) return {.done = United::Done::stays};
     Arrangement arrangement(mesh, exact);
     if (!arrangement.cut(*pairs)) return given_up();
     United cut;
@@ -379,9 +391,11 @@ United unite(const PreparedMesh& mesh, const Patches& whole, std::span<const Vec
     const Classifier classifier(mesh, cut, patches, tree, *pairs, exact);
     Answers answers(patches.list.size());
     executor.each(answers.size(), 1, [&](std::uint32_t p) { answers[p] = classifier.of(p); });
-    if (classifier.is_too_much() || !close(patches, edges, answers)) return given_up();
+    if (classifier.is_too_much() || classifier.share_of(Classifier::Answer::unclear, answers) > 0.1
+        || !close(patches, edges, answers))
+        return given_up();
 
-    if (std::ranges::count(answers, Classifier::Answer::stays) == 0) return {.done = United::Done::empty};
+    if (std::ranges::count(answers, Classifier::Answer::stays) == 0) return {.done = United::Done::stays};
     United united{.done = United::Done::union_, .vertices = std::move(cut.vertices)};
     std::vector<std::uint32_t> pieces(mesh.triangles.size(), 0), kept(mesh.triangles.size(), 0);
     for (std::uint32_t p = 0; p < cut.triangles.size(); ++p) {

@@ -18,7 +18,7 @@ struct United {
     enum class Done {
         nothing, ///< it does not cross itself, and its winding number is 0 in front and 1 behind everywhere
         union_,
-        empty,    ///< nothing would be left: what winds about nothing, as a sheet with two sides
+        stays,    ///< nothing would be left, as of a sheet with two sides, or nothing crosses any more that can be told
         given_up, ///< it was too much work, or rounding decided
     };
     Done done = Done::nothing;

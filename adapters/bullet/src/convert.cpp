@@ -301,7 +301,7 @@ PlaceName name_of_triangle(const btCollisionShape& shape, int triangle) {
         found = name.index < count;
         if (!found) name.index -= count;
     });
-    return name;
+    return found ? name : PlaceName{}; // what spans a hole has none
 }
 
 Form form_of(const btCollisionShape& shape) {
@@ -490,6 +490,10 @@ std::shared_ptr<const Shape> stretch_shape(const Shape& shape, const Stretch& s,
     // Lengths, areas and volumes have changed: check again, but keep the file's indices.
     PreparedMesh mesh;
     mesh.report = prepare_mesh(plain, {.repair = Repair::as_is, .check = Check::topology, .threads = threads}).report;
+    mesh.report.file_vertices = shape.report().file_vertices;
+    mesh.report.file_triangles = shape.report().file_triangles;
+    mesh.report.holes = shape.report().holes;
+    mesh.report.spanning = shape.report().spanning;
     mesh.name = std::move(plain.name);
     mesh.vertices = std::move(plain.vertices);
     mesh.triangles = std::move(plain.triangles);

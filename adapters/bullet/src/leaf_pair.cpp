@@ -20,7 +20,10 @@ bool has_triangles(const Leaf& leaf) {
 
 /// triangle: as Candidate::triangle.
 PlaceName name_of_triangle(const Leaf& leaf, int triangle) {
-    if (leaf.converted.names) return (*leaf.converted.names)[static_cast<std::size_t>(triangle)];
+    if (const auto& names = leaf.converted.names) {
+        const auto at = static_cast<std::size_t>(triangle);
+        return at < names->size() ? (*names)[at] : PlaceName{}; // what spans a hole has none
+    }
     return bullet::name_of_triangle(*leaf.shape, triangle);
 }
 

@@ -6,8 +6,8 @@
     print(rc.collide(part, part, pose_b=pose))
 
 `Mesh` and `Shape` hold meshes; `collide`, `intersects`, `distance`, `closest_point`, `signed_distance`, `raycast` and
-`contains` answer questions about one pair or many at once; a `Scene` steps bodies in time. Metres, poses as 4 x 4 matrices, normals from
-a to b, depth > 0 where meshes penetrate. Bad input raises InputError, a ValueError.
+`contains` answer questions about one pair or many at once; a `Scene` steps bodies in time. Metres, poses as 4 x 4
+matrices, normals from a to b, depth > 0 where meshes penetrate. Bad input raises InputError, a ValueError.
 """
 
 from . import _core

@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._core import InputError
 from ._arrays import Batch, as_count, as_length, as_points, as_poses
+from ._core import InputError
 from .contacts import PairContacts
 from .scene import as_settings
 from .shape import ShapeLike, Shapes, as_shape, as_shapes
@@ -275,7 +275,7 @@ def distance_grid(
         (made.box[0] if low is None else low, "low"), (made.box[1] if high is None else high, "high"))]  # fmt: skip
     axes = [np.linspace(ends[0][k], ends[1][k], sizes[k]) for k in range(3)]
     points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
-    return signed_distance(made, points, threads=threads).distance
+    return np.asarray(signed_distance(made, points, threads=threads).distance)
 
 
 def raycast(
