@@ -24,5 +24,6 @@ void add_threads(CLI::App& app);
 void add_new_shape(CLI::App& app);
 void add_sleeping(CLI::App& app);
 void add_floor(CLI::App& app);
+void add_factory(CLI::App& app);
 
 } // namespace raycontact::bench
