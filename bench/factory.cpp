@@ -35,7 +35,7 @@ namespace {
 struct Options {
     std::filesystem::path folder;
     std::string only, finder;
-    double patience = 20, seconds = 60;
+    double patience = 60, seconds = 60;
     bool quick = false;
 };
 
@@ -161,15 +161,14 @@ public:
         const Pose moved = relative_pose(last_.value_or(pose), pose);
         turns_ += std::atan2(moved.rotation[3], moved.rotation[0]) / (2 * std::numbers::pi);
         last_ = pose;
-        const double before = above_;
         above_ = pose.translation.z - place_;
-        if (before > 1e-4 && above_ <= 1e-4) seated_ = time;
+        if (seated_ < 0 && above_ <= 1e-4) seated_ = time;
     }
     std::vector<Figure> figures() const override {
         return {{.name = "above its seat", .unit = "m", .value = above_},
                 {.name = "contacts a step", .unit = "", .value = points_ / std::max(steps_, 1.0)},
                 {.name = "seated after", .unit = "s", .value = seated_},
-                {.name = "off its thread", .unit = "m", .value = turns_ * pitch_}};
+                {.name = "turned along its thread by", .unit = "m", .value = turns_ * pitch_}};
     }
     static constexpr std::size_t moving = 1;
 
@@ -232,9 +231,10 @@ void run_fit(const Fit& fit, const Part& moving, const Part& fixed, const Room& 
             how.seconds = options.seconds;
             const HoldResult result = run_hold(scene_of(fit, moving, fixed, room, hertz), finder, how);
             const auto figure = [&](std::size_t i) { return result.figures[i].value; };
+            const std::string became = verdict(fit, room, figure(0), figure(3));
             fmt::print("{:<26} {:>5} {:<8} {:9.1f} {:6.3f} {:9.1f} {:8.2f} {:>7}  {}{}\n", fit.name, hertz, name,
                        1e6 * result.deepest, result.deepest_time, figure(1), result.step_ms,
-                       figure(2) < 0 ? "-" : fmt::format("{:.3f}", figure(2)), verdict(fit, room, figure(0), figure(3)),
+                       became == "seated" ? fmt::format("{:.3f}", figure(2)) : "-", became,
                        result.ended_early ? fmt::format(" (ended after {:.3f} s)", result.seconds) : "");
             std::fflush(stdout);
         }

@@ -178,7 +178,7 @@ TEST(Bench, HelpNamesEveryBenchmark) {
     const Ran whole = run("--help", true);
     EXPECT_EQ(whole.status, 0);
     for (const std::string name : {"peers", "growth", "sweep", "device", "roofline", "several", "balance", "rays",
-                                   "stacks", "holds", "motion", "clash", "new-shape", "sleeping", "floor"}) {
+                                   "stacks", "holds", "motion", "clash", "new-shape", "sleeping", "floor", "factory"}) {
         EXPECT_NE(whole.out.find("\n  " + name + " "), std::string::npos) << name;
         EXPECT_EQ(run(name + " --help", true).status, 0) << name;
         EXPECT_EQ(run(name + " --no-such-option", true).status, 2) << name;
