@@ -7,6 +7,7 @@
 
 #include <raycontact/query.h>
 #include <scenes/peers/clock.h>
+#include <tests/holds/depth.h>
 #include <tests/holds/parts.h>
 #include <tests/holds/run.h>
 
@@ -148,32 +149,38 @@ Room room_of(const Fit& fit, const Part& moving, const Part& fixed) {
     return room;
 }
 
-/// Counts the points of contact, and knows where the moving part is.
+/// Counts the points of contact, and knows where the moving part is, and how deep: on its way, and once it was there.
 class Assembly : public Course {
 public:
-    Assembly(double place, double starts, double pitch) : place_(place), above_(starts), pitch_(pitch) {}
+    Assembly(const Hold& hold, double place, double starts, double pitch)
+        : probe_(hold.stack, Ground::none), sample_(hold.sample), place_(place), above_(starts), pitch_(pitch) {}
     void after_step(const StackWorld& world, double time) override {
         btDispatcher& dispatcher = *world.world().getDispatcher();
         for (int i = 0; i < dispatcher.getNumManifolds(); ++i)
             points_ += dispatcher.getManifoldByIndexInternal(i)->getNumContacts();
-        ++steps_;
         const Pose pose = world.pose(moving);
         const Pose moved = relative_pose(last_.value_or(pose), pose);
         turns_ += std::atan2(moved.rotation[3], moved.rotation[0]) / (2 * std::numbers::pi);
         last_ = pose;
         above_ = pose.translation.z - place_;
         if (seated_ < 0 && above_ <= 1e-4) seated_ = time;
+        double& deepest = seated_ < 0 ? on_the_way_ : there_;
+        if (++steps_ % sample_ == 0) deepest = std::max(deepest, probe_.deepest(world.poses()));
     }
     std::vector<Figure> figures() const override {
         return {{.name = "above its seat", .unit = "m", .value = above_},
-                {.name = "contacts a step", .unit = "", .value = points_ / std::max(steps_, 1.0)},
+                {.name = "contacts a step", .unit = "", .value = points_ / std::max(steps_, 1)},
                 {.name = "seated after", .unit = "s", .value = seated_},
-                {.name = "turned along its thread by", .unit = "m", .value = turns_ * pitch_}};
+                {.name = "turned along its thread by", .unit = "m", .value = turns_ * pitch_},
+                {.name = "deepest on the way", .unit = "m", .value = on_the_way_},
+                {.name = "deepest once there", .unit = "m", .value = there_}};
     }
     static constexpr std::size_t moving = 1;
 
 private:
-    double place_, above_, pitch_, points_ = 0, steps_ = 0, seated_ = -1, turns_ = 0;
+    DepthProbe probe_;
+    int sample_, steps_ = 0;
+    double place_, above_, pitch_, points_ = 0, seated_ = -1, turns_ = 0, on_the_way_ = 0, there_ = 0;
     std::optional<Pose> last_;
 };
 
@@ -198,13 +205,13 @@ Hold scene_of(const Fit& fit, const Part& moving, const Part& fixed, const Room&
     }
     hold.stack.bodies[Assembly::moving].friction = fit.kind == Kind::nut ? 0.01 : 0.5;
     hold.slop = std::min(1e-5, room.clearance / 5);
-    hold.rest = std::nullopt;
+    hold.rest = hold.deepest = std::nullopt; // the course looks
     hold.ground = Ground::none;
     hold.hertz = hertz;
     hold.seconds = fit.kind == Kind::nut ? 1.5 : 0.5;
     hold.sample = static_cast<int>(hertz / (fit.kind == Kind::peg ? 60 : 20));
     const double place = body_centre.z + room.seat, above = room.starts - room.seat, pitch = fit.pitch;
-    hold.course = [=] { return std::make_unique<Assembly>(place, above, pitch); };
+    hold.course = [hold, place, above, pitch] { return std::make_unique<Assembly>(hold, place, above, pitch); };
     return hold;
 }
 
@@ -232,8 +239,8 @@ void run_fit(const Fit& fit, const Part& moving, const Part& fixed, const Room& 
             const HoldResult result = run_hold(scene_of(fit, moving, fixed, room, hertz), finder, how);
             const auto figure = [&](std::size_t i) { return result.figures[i].value; };
             const std::string became = verdict(fit, room, figure(0), figure(3));
-            fmt::print("{:<26} {:>5} {:<8} {:9.1f} {:6.3f} {:9.1f} {:8.2f} {:>7}  {}{}\n", fit.name, hertz, name,
-                       1e6 * result.deepest, result.deepest_time, figure(1), result.step_ms,
+            fmt::print("{:<26} {:>5} {:<8} {:9.1f} {:9.1f} {:9.1f} {:8.2f} {:>7}  {}{}\n", fit.name, hertz, name,
+                       1e6 * figure(4), 1e6 * figure(5), figure(1), result.step_ms,
                        became == "seated" ? fmt::format("{:.3f}", figure(2)) : "-", became,
                        result.ended_early ? fmt::format(" (ended after {:.3f} s)", result.seconds) : "");
             std::fflush(stdout);
@@ -259,8 +266,8 @@ void run_all(const Options& options) {
         rooms.push_back(room_of(fit, parts.at(fit.moving), parts.at(fit.fixed)));
         fmt::print("{:<26} {:12.1f}\n", fit.name, 1e6 * rooms.back().clearance);
     }
-    fmt::print("\n{:<26} {:>5} {:<8} {:>9} {:>6} {:>9} {:>8} {:>7}  {}\n", "fit", "hertz", "finder", "deep um", "at s",
-               "contacts", "ms/step", "seat s", "what became of it");
+    fmt::print("\n{:<26} {:>5} {:<8} {:>9} {:>9} {:>9} {:>8} {:>7}  {}\n", "fit", "hertz", "finder", "way um",
+               "there um", "contacts", "ms/step", "seat s", "what became of it");
     until_stopped([&] {
         for (std::size_t i = 0; i < fits.size(); ++i)
             run_fit(fits[i], parts.at(fits[i].moving), parts.at(fits[i].fixed), rooms[i], options);
