@@ -86,8 +86,11 @@ TEST_F(MeshCommand, EndsWithAVerdictForEachFile) {
     const auto verdict = [&](std::size_t from_last) { return text[text.size() - from_last]; };
     EXPECT_EQ(verdict(4), "cube.obj: good for contacts");
     EXPECT_TRUE(verdict(3).starts_with("open.obj: open: 4 border edges")) << verdict(3);
-    EXPECT_TRUE(verdict(2).starts_with("crossed.obj: self-intersecting: ")) << verdict(2);
-    EXPECT_TRUE(verdict(1).starts_with("nested.obj: nested: ")) << verdict(1);
+    EXPECT_EQ(verdict(2), "crossed.obj: good for contacts"); // united
+    EXPECT_EQ(verdict(1), "nested.obj: good for contacts");
+    const auto as_is = lines(run({"mesh", "crossed.obj", "nested.obj", "--as-is"}).out);
+    EXPECT_TRUE(as_is[as_is.size() - 2].starts_with("crossed.obj: self-intersecting: "));
+    EXPECT_TRUE(as_is.back().starts_with("nested.obj: nested: "));
 }
 
 TEST_F(MeshCommand, JsonIsOneObjectAFile) {
@@ -104,15 +107,29 @@ TEST_F(MeshCommand, JsonIsOneObjectAFile) {
     EXPECT_EQ(objects[1]["border_edges"], 4);
 }
 
+TEST_F(MeshCommand, ClosesAndWritesWhatItClosed) {
+    const auto closed = run({"mesh", "open.obj", "--close", "--write", "closed.obj"});
+    EXPECT_EQ(closed.status, 0) << closed.err;
+    EXPECT_EQ(lines(closed.out).back(), "open.obj: good for contacts: a solid, of which 1 hole is spanned");
+    const auto again = json_lines(run({"mesh", "closed.obj", "--as-is", "--json"}).out).at(0);
+    EXPECT_EQ(again["kind"], "solid");
+    EXPECT_EQ(again["triangles"], 12);
+    EXPECT_EQ(json_lines(run({"mesh", "open.obj", "--json"}).out).at(0)["kind"], "sheet");
+    expect_refused(run({"mesh", "open.obj", "--write", "open.obj"}), "is one of the files to read");
+    expect_refused(run({"mesh", "open.obj", "--write", "closed.stl"}), "give a name that ends in .obj");
+    expect_refused(run({"mesh", "open.obj", "cube.obj", "--write", "closed.obj"}), "give one mesh file");
+    expect_refused(run({"mesh", "open.obj", "--close", "--as-is"}), "--close");
+}
+
 TEST_F(MeshCommand, StrictIsStatusTwoWhereOneIsBad) {
     EXPECT_EQ(run({"mesh", "cube.obj", "cube.obj", "--strict"}).status, 0);
     const auto one = run({"mesh", "open.obj", "--strict"});
     EXPECT_EQ(one.status, 2);
     EXPECT_TRUE(lines(one.out).back().starts_with("open.obj: open")); // what was found is printed all the same
     EXPECT_EQ(one.err, "raycontact: --strict: not good for contacts: open.obj\n");
-    const auto two = run({"mesh", "open.obj", "cube.obj", "crossed.obj", "--strict", "--json"});
+    const auto two = run({"mesh", "open.obj", "cube.obj", "crossed.obj", "open.obj", "--strict", "--json"});
     EXPECT_EQ(two.status, 2);
-    EXPECT_EQ(json_lines(two.out).size(), 3u);
+    EXPECT_EQ(json_lines(two.out).size(), 4u);
     EXPECT_EQ(two.err, "raycontact: --strict: not good for contacts: open.obj and 1 more\n");
 }
 
@@ -146,10 +163,10 @@ TEST_F(MeshCommand, PartsInPartsAreMadeCavitiesOrSolidsWhenAskedFor) {
         EXPECT_EQ(result.status, 0) << result.err;
         return json_lines(result.out).at(0);
     };
-    EXPECT_DOUBLE_EQ(report({})["volume"], 65);
+    EXPECT_DOUBLE_EQ(report({})["volume"], 64);
     EXPECT_DOUBLE_EQ(report({"--cavities", "make"})["volume"], 63);
     EXPECT_EQ(report({"--cavities", "make"})["good"], true);
-    EXPECT_DOUBLE_EQ(report({"--cavities", "undo"})["volume"], 65);
+    EXPECT_DOUBLE_EQ(report({"--cavities", "undo"})["volume"], 64);
     expect_refused(run({"mesh", "nested.obj", "--cavities", "caves"}), "--cavities: 'caves' is unknown");
     expect_refused(run({"mesh", "nested.obj", "--cavities", "make", "--as-is"}), "--cavities");
 }

@@ -293,15 +293,16 @@ btVector3 scaling_of(const btCollisionShape& shape) {
 
 PlaceName name_of_triangle(const btCollisionShape& shape, int triangle) {
     PlaceName name{0, triangle};
-    bool found = false;
+    bool found = false, has_parts = false; // none: a shape of ours
     each_part(shape, [&](const btStridingMeshInterface& mesh, int part, const btVector3&) {
+        has_parts = true;
         if (found) return;
         name.part = part;
         const int count = Part(mesh, part).triangle_count;
         found = name.index < count;
         if (!found) name.index -= count;
     });
-    return found ? name : PlaceName{}; // what spans a hole has none
+    return found || !has_parts ? name : PlaceName{}; // what spans a hole has none
 }
 
 Form form_of(const btCollisionShape& shape) {
