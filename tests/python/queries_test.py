@@ -114,6 +114,9 @@ def test_holes_are_spanned_where_the_mesh_is_a_solid():
     assert shape.has_inside and shape.report.holes == 2 and shape.report.spanning == 2
     assert shape.triangle_index[-1] == len(holed) + 1
     assert not rc.Shape(rc.Mesh(vertices, holed), holes="none").has_inside
+    two = (np.concatenate([vertices, vertices + [0.3, 0.1, 0.05]]), np.concatenate([faces, faces + len(vertices)]))
+    united, left = rc.Shape(rc.Mesh(*two)), rc.Shape(rc.Mesh(*two), overlaps="leave")
+    assert united.report.outward and left.report.self_intersecting and len(left.triangles) == 2 * len(faces)
     half = faces[vertices[faces][:, :, 2].max(axis=1) > 0]
     assert not rc.Shape(rc.Mesh(vertices, half)).has_inside
     with pytest.raises(rc.InputError, match="of_solids, of_all or none"):

@@ -42,6 +42,7 @@ class Shape:
     holes: which are spanned with triangles of our own, numbered after those of the mesh: "of_solids" (all, if the
         winding number says that the mesh is a solid; docs/conventions.md, Holes), "of_all" (of sheets, too, if they are
         flat or smaller than a tenth of the diagonal), "none".
+    overlaps: parts of one closed mesh that cross or lie in each other become one solid ("unite"), or stay ("leave").
     threads: 0 is one for each core; no bit depends on it.
 
     Raises InputError for a mesh without area, and as `Mesh` does. Safe to use from any thread.
@@ -55,11 +56,14 @@ class Shape:
         repair: bool = True,
         nesting: str = "as_wound",
         holes: str = "of_solids",
+        overlaps: str = "unite",
         threads: int = 0,
     ) -> None:
         if not isinstance(mesh, Mesh) or scale != 1.0:
             mesh = Mesh(mesh, scale=scale)
-        self._core = _core.make_shape(mesh._core, bool(repair), str(nesting), str(holes), as_count(threads, "threads"))
+        self._core = _core.make_shape(
+            mesh._core, bool(repair), str(nesting), str(holes), str(overlaps), as_count(threads, "threads")
+        )
 
     @classmethod
     def _wrap(cls, core: _core.Shape) -> Shape:

@@ -23,6 +23,12 @@ Nesting nesting_from(std::string_view word) {
     throw InputError("nesting \"" + std::string(word) + "\" is not known; give as_wound, cavities or solids");
 }
 
+Overlaps overlaps_from(std::string_view word) {
+    if (word == "unite") return Overlaps::unite;
+    if (word == "leave") return Overlaps::leave;
+    throw InputError("overlaps \"" + std::string(word) + "\" is not known; give unite or leave");
+}
+
 Holes holes_from(std::string_view word) {
     if (word == "of_solids") return Holes::of_solids;
     if (word == "of_all") return Holes::of_all;
@@ -73,15 +79,17 @@ void bind_shape(nb::module_& m) {
         });
     m.def(
         "make_shape",
-        [](const Mesh& mesh, bool repair, const std::string& nesting, const std::string& holes, std::uint32_t threads) {
+        [](const Mesh& mesh, bool repair, const std::string& nesting, const std::string& holes,
+           const std::string& overlaps, std::uint32_t threads) {
             const PrepareOptions options{.repair = repair ? Repair::allowed : Repair::as_is,
                                          .nesting = nesting_from(nesting),
                                          .holes = holes_from(holes),
+                                         .overlaps = overlaps_from(overlaps),
                                          .threads = threads};
             const WithoutGil without_gil;
             return std::const_pointer_cast<Shape>(Shape::make(prepare_mesh(mesh, options), threads));
         },
-        "mesh"_a, "repair"_a, "nesting"_a, "holes"_a, "threads"_a);
+        "mesh"_a, "repair"_a, "nesting"_a, "holes"_a, "overlaps"_a, "threads"_a);
 }
 
 } // namespace raycontact::python
