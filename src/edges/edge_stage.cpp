@@ -181,7 +181,12 @@ void EdgeStage::find(Workspace& work, Block& block, const Question& question, co
               id_in(question.update.bodies, pair.second), from_a ? a : b, from_a ? b : a,
               question.update.settings.direction);
     }
-    std::ranges::sort(block.contacts.begin() + first, block.contacts.end(), {}, &Contact::key);
+    std::ranges::sort(block.contacts.begin() + first, block.contacts.end(), [](const Contact& p, const Contact& q) {
+        return p.key() != q.key() ? p.key() < q.key() : p.depth > q.depth;
+    });
+    // Edges of pieces of one triangle may have one name: the deepest of them stands for all.
+    const auto same = [](const Contact& p, const Contact& q) { return p.key() == q.key(); };
+    block.contacts.erase(std::unique(block.contacts.begin() + first, block.contacts.end(), same), block.contacts.end());
 }
 
 std::uint64_t EdgeStage::bytes() const {

@@ -270,6 +270,7 @@ bool is_solid(const PreparedMesh& spanned, std::size_t first_spanning, const Mes
         const std::optional<int> in_front = winding.in_front_of(chosen[i], point, std::span(&chosen[i], 1));
         if (in_front) answers[i] = *in_front + 1 >= 1 ? inner : outer; // not between faces that lie on each other
     });
+    if (winding.is_too_much()) return false;
     const auto count = [&](Answer which) { return std::size_t(std::ranges::count(answers, which)); };
     const std::size_t clear = samples - count(unclear), whole = count(inner) + count(outer);
     return 2 * clear >= samples && 10 * whole >= 9 * clear && 2 * count(inner) >= clear;

@@ -175,6 +175,11 @@ public:
             surface_.emplace(prepared_.triangles, exact_, executor_);
         };
         append();
+        if (number + prepared_.triangles.size() - first > most_triangles) { // no number is left for them
+            prepared_.triangles.resize(first);
+            surface_.emplace(prepared_.triangles, exact_, executor_);
+            return;
+        }
         if (!is_solid(prepared_, first, surface_->tree(), executor_)) {
             const double small = 0.1 * length(box_of(exact_).high - box_of(exact_).low);
             std::erase_if(holes, [&](const Hole& hole) {
@@ -201,20 +206,30 @@ public:
         const MeshReport& found = prepared_.report;
         if (!found.closed || !found.oriented) return false;
         // What is rounded may cross itself again: then what is nearer than doubles can tell is drawn together.
-        const double near = 1e-12 * length(found.box_max - found.box_min);
+        const Vec3 reach = most(most(found.box_max, -1.0 * found.box_min), Vec3{}),
+                   size = found.box_max - found.box_min;
+        const double near = std::max(1e-12 * length(size), 1e-15 * length(reach));
+        double tolerance = 0;
         constexpr int rounds = 5;
-        for (int round = 0; round < rounds; ++round) {
-            const United united = unite(prepared_, patches_, exact_, surface_->tree(), round > 0 ? near : 0, executor_);
+        for (int round = 0, times = 0; round < rounds; ++round) {
+            const United united = unite(prepared_, patches_, exact_, surface_->tree(), tolerance, executor_);
             if (united.done == United::Done::nothing) return true;
             if (united.done == United::Done::stays) return false;
-            if (united.done == United::Done::given_up) break;
-            take(united, round == 0);
+            const bool given_up = united.done == United::Done::given_up;
+            if (given_up && std::exchange(tolerance, near) > 0) {
+                report(times == 0 ? "left parts that cross as they are: too many, or too near"
+                                  : "left pieces of united parts that cross by a rounding");
+                return false;
+            }
+            tolerance = near;
+            if (given_up) continue;
+            take(united, times++ == 0);
             exact_ = snapped(prepared_.vertices);
             surface_.emplace(prepared_.triangles, exact_, executor_);
             if (surface_->is_empty()) throw InputError(name + ": nothing is left of parts that lie in each other");
             find_edges();
         }
-        report("left parts that cross as they are: too many, or too near");
+        report("left pieces of united parts that cross by a rounding");
         return false;
     }
 
@@ -265,6 +280,9 @@ private:
         prepared_.vertex_index = std::move(vertex_index);
         prepared_.triangles = std::move(triangles);
         prepared_.triangle_index = std::move(triangle_index);
+        prepared_.report.spanning = static_cast<std::uint64_t>(
+            prepared_.triangle_index.end()
+            - std::ranges::lower_bound(prepared_.triangle_index, prepared_.report.file_triangles));
         if (!tell) return;
         std::string text = "united parts that lie in each other: split " + counted(united.split, "triangle")
                            + ", dropped " + counted(united.buried, "buried one");

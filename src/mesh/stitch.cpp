@@ -79,7 +79,7 @@ Stitched stitch_borders(std::span<const Triangle> triangles, std::span<const Vec
     });
     if (corners.empty()) return result;
     std::ranges::sort(ends);
-    ends.erase(std::ranges::unique(ends).begin(), ends.end());
+    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
     std::vector<Triangle> points; // as triangles, for the tree
     for (const std::uint32_t v : ends) points.push_back({v, v, v});
     std::vector<std::uint32_t> all(points.size());

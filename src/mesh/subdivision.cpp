@@ -63,7 +63,7 @@ bool Subdivision::cross(const Segment& s, const Segment& t) const {
 
 void Subdivision::cross_segments() {
     std::ranges::sort(segments_);
-    segments_.erase(std::ranges::unique(segments_).begin(), segments_.end());
+    segments_.erase(std::unique(segments_.begin(), segments_.end()), segments_.end());
     for (std::size_t i = 0; i < segments_.size() && work_ > 0; ++i) {
         spend(i);
         for (std::size_t k = 0; k < i && work_ > 0; ++k) {
@@ -129,7 +129,7 @@ void Subdivision::recover(const Segment& segment) {
     spend(edges_.size());
     while (!crossing.empty() && work_ > 0) {
         spend(1);
-        const auto [u, v] = crossing.front();
+        const std::uint32_t u = crossing.front().first, v = crossing.front().second;
         crossing.pop_front();
         const std::uint32_t left = edges_.at({u, v}), right = edges_.at({v, u});
         const auto tip = [&](std::uint32_t piece) {
@@ -150,7 +150,7 @@ void Subdivision::recover(const Segment& segment) {
 
 std::vector<Triangle> Subdivision::cut() {
     std::ranges::sort(points_);
-    points_.erase(std::ranges::unique(points_).begin(), points_.end());
+    points_.erase(std::unique(points_.begin(), points_.end()), points_.end());
     pieces_.assign(1, {});
     set(0, corners_);
     for (const std::uint32_t p : points_)

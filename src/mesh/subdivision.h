@@ -9,7 +9,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
-#include <span>
 #include <utility>
 #include <vector>
 
@@ -26,7 +25,6 @@ public:
 
     void add(std::uint32_t point) { points_.push_back(point); }
     void add(const Segment& segment);
-    std::span<const Segment> segments() const { return segments_; }
 
     /// The points that lie on the triangle's edge from corner k to the next one.
     std::vector<std::uint32_t> on_edge(std::size_t k) const;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "mesh/unite.h"
 
+#include "interruption.h"
 #include "mesh/degenerate.h"
+#include "mesh/input_file.h"
 #include "mesh/nesting.h"
 #include "mesh/predicates.h"
 #include "mesh/self_intersection.h"
@@ -43,13 +45,18 @@ public:
 
     /// False if that is too much work.
     bool cut(std::span<const Pair> pairs) {
-        work_ = 20'000'000 + 15'000 * pairs.size(); // twice what files of robots need
-        for (const auto& [i, k] : pairs) meet(i, k);
+        work_ = std::min<std::size_t>(200'000'000 + 15'000 * pairs.size(), 4'000'000'000); // half a minute
+        const InterruptionCheck check;
+        for (const auto& [i, k] : pairs) {
+            check();
+            meet(i, k);
+        }
         std::map<Pair, std::vector<std::uint32_t>> on_edges; // of the mesh's edges
         const auto edge_of = [&](std::uint32_t t, std::size_t k) {
             return Pair(std::minmax(mesh_.triangles[t][k], mesh_.triangles[t][(k + 1) % 3]));
         };
         for (auto& [t, subdivision] : subdivisions_) {
+            check();
             subdivision.cross_segments();
             for (std::size_t k = 0; k < 3; ++k)
                 for (const std::uint32_t p : subdivision.on_edge(k)) on_edges[edge_of(t, k)].push_back(p);
@@ -58,6 +65,7 @@ public:
             for (std::size_t k = 0; k < 3; ++k)
                 if (const auto found = on_edges.find(edge_of(t, k)); found != on_edges.end())
                     for (const std::uint32_t p : found->second) subdivision.add(p);
+            check();
             pieces_[t] = subdivision.cut();
         }
         return work_ > 0;
@@ -66,16 +74,16 @@ public:
     /// Vertices and triangles, uncut ones and pieces. A point that is nearer than `tolerance` to one before it is that.
     void list(double tolerance, United& result) const {
         result.vertices = mesh_.vertices;
-        std::map<std::array<double, 3>, std::uint32_t> cells;
+        std::map<std::array<double, 3>, std::vector<std::uint32_t>> cells;
         const auto find = [&](const Vec3& p, std::uint32_t number) {
             const auto cell = [&](double x) { return std::floor(x / (8 * tolerance)) + 0.0; }; // + 0: no -0
             for (const double x : {cell(p.x - tolerance), cell(p.x + tolerance)})
                 for (const double y : {cell(p.y - tolerance), cell(p.y + tolerance)})
                     for (const double z : {cell(p.z - tolerance), cell(p.z + tolerance)})
-                        if (const auto found = cells.find({x, y, z});
-                            found != cells.end() && length(result.vertices[found->second] - p) < tolerance)
-                            return found->second;
-            cells.try_emplace({cell(p.x), cell(p.y), cell(p.z)}, number);
+                        if (const auto found = cells.find({x, y, z}); found != cells.end())
+                            for (const std::uint32_t v : found->second)
+                                if (length(result.vertices[v] - p) < tolerance) return v;
+            cells[{cell(p.x), cell(p.y), cell(p.z)}].push_back(number);
             return number;
         };
         if (tolerance > 0)
@@ -116,7 +124,7 @@ private:
         for (std::size_t turns = 0; turns < 3; ++turns) {
             for (std::size_t k = 0; k < 3; ++k)
                 if (piece[k] == mesh_.triangles[t][k]) return piece;
-            std::ranges::rotate(piece, piece.begin() + 1);
+            std::rotate(piece.begin(), piece.begin() + 1, piece.end());
         }
         return piece;
     }
@@ -217,7 +225,7 @@ private:
     /// Points on one line, of which a triangle has what lies between them.
     void add_line(std::vector<std::uint32_t>& points, Subdivision& to) {
         std::ranges::sort(points);
-        points.erase(std::ranges::unique(points).begin(), points.end());
+        points.erase(std::unique(points.begin(), points.end()), points.end());
         std::ranges::sort(points, [&](std::uint32_t p, std::uint32_t q) {
             for (std::size_t k = 0; k < 3; ++k)
                 if (const int o = order(table_[p], table_[q], k); o != 0) return o < 0;
@@ -243,10 +251,10 @@ public:
                std::span<const Pair> pairs, std::span<const Vec3> exact)
         : mesh_(mesh), cut_(cut), winding_(mesh, tree), by_patch_(patches.list.size()) {
         for (const auto& [i, k] : pairs) {
+            const Triangle& own = mesh.triangles[i];
             const auto flat = [&](std::uint32_t t) {
-                const auto [a, b, c] = mesh.triangles[i];
                 return std::ranges::all_of(mesh.triangles[t], [&](std::uint32_t v) {
-                    return orient3d(exact[a], exact[b], exact[c], exact[v]) == 0;
+                    return orient3d(exact[own[0]], exact[own[1]], exact[own[2]], exact[v]) == 0;
                 });
             };
             if (!flat(k)) continue;
@@ -345,7 +353,9 @@ using Answers = std::vector<Classifier::Answer>;
 /// all other patches are known tells. False if that is not so in the end.
 bool close(const Patches& patches, std::span<const HalfEdge> edges, Answers& answers) {
     using enum Classifier::Answer;
-    for (bool changed = true; changed;) {
+    constexpr int most_passes = 64; // of chains of patches that wait for each other
+    bool changed = true;
+    for (int pass = 0; changed && pass < most_passes; ++pass) {
         changed = false;
         for_each_edge(edges, [&](std::span<const HalfEdge> sides) {
             int balance = 0;
@@ -386,6 +396,7 @@ United unite(const PreparedMesh& mesh, const Patches& whole, std::span<const Vec
     if (!arrangement.cut(*pairs)) return given_up();
     United cut;
     arrangement.list(tolerance, cut);
+    if (cut.triangles.size() > most_triangles) return given_up();
     const std::vector<HalfEdge> edges = sorted_half_edges(cut.triangles);
     const Patches patches = find_patches(cut.triangles, edges);
     const Classifier classifier(mesh, cut, patches, tree, *pairs, exact);

@@ -177,7 +177,7 @@ std::optional<Mesh> join_borders(const Mesh& mesh, const PreparedMesh& prepared,
     for (const auto& [a, b] : border_of(edges)) ends.insert(ends.end(), {a, b});
     if (ends.empty()) return std::nullopt;
     std::ranges::sort(ends);
-    ends.erase(std::ranges::unique(ends).begin(), ends.end());
+    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
     std::vector<Vec3> places(prepared.vertices);
     for (Vec3& p : places) p = p + Vec3{}; // turns -0 into 0
     const Box box = box_of(places);        // a small part of a large whole may be no longer than the last digit
@@ -205,9 +205,9 @@ std::optional<Mesh> join_borders(const Mesh& mesh, const PreparedMesh& prepared,
 
 std::optional<double> closing_weld(const PreparedMesh& mesh) {
     if (mesh.report.closed && mesh.report.holes == 0) return std::nullopt;
-    const auto of_file = mesh.triangles.size() - mesh.report.spanning;
+    const auto spanning = std::ranges::lower_bound(mesh.triangle_index, mesh.report.file_triangles);
     const std::vector<Triangle> triangles(mesh.triangles.begin(),
-                                          mesh.triangles.begin() + static_cast<std::ptrdiff_t>(of_file));
+                                          mesh.triangles.begin() + (spanning - mesh.triangle_index.begin()));
     const std::vector<Edge> border = border_of(sorted_half_edges(triangles));
     if (border.empty()) return std::nullopt;
     std::vector<std::uint32_t> ends;

@@ -47,8 +47,9 @@ void of_edges(Contact& contact, const SpeculativePair& pair) {
         const Vec3 at = rotated_back(body.centred.rotation, contact.point_a - body.centred.translation);
         std::uint32_t nearest = NONE;
         double least = std::numeric_limits<double>::infinity();
-        for (const std::uint32_t& piece : std::ranges::equal_range(numbers, index / 3)) {
-            const auto t = static_cast<std::uint32_t>(&piece - numbers.data());
+        const auto [begin, end] = std::equal_range(numbers.begin(), numbers.end(), index / 3);
+        for (auto piece = begin; piece != end; ++piece) {
+            const auto t = static_cast<std::uint32_t>(piece - numbers.begin());
             const Vec3 from = shape.corner(t, index % 3), to = shape.corner(t, (index + 1) % 3);
             const double away = length(at - nearest_of(at, from, to, to).point);
             if (away < least) nearest = 3 * t + index % 3;

@@ -183,11 +183,11 @@ bool ContactFinder::is_on_side(Candidate& c, const Entry& entry) const {
     c.triangle = c.key.other;
     // The pieces of a triangle that was split at a T-junction have its number.
     const std::span<const std::uint32_t> numbers = shape.triangle_index();
-    return std::ranges::none_of(std::ranges::equal_range(numbers, static_cast<std::uint32_t>(edge / 3)),
-                                [&](const std::uint32_t& piece) {
-                                    const auto t = static_cast<std::size_t>(&piece - numbers.data());
-                                    return border.edges[3 * t + static_cast<std::size_t>(edge % 3)];
-                                });
+    const auto [begin, end] = std::equal_range(numbers.begin(), numbers.end(), static_cast<std::uint32_t>(edge / 3));
+    return std::none_of(begin, end, [&](const std::uint32_t& piece) {
+        const auto t = static_cast<std::size_t>(&piece - numbers.data());
+        return border.edges[3 * t + static_cast<std::size_t>(edge % 3)];
+    });
 }
 
 // A feature of the mesh leaves the convex shape on one side, by less. A vertex of the shape may lie between a front and

@@ -198,6 +198,66 @@ TEST(Unite, ContactsAreWithTheOuterSurfaceAlone) {
     EXPECT_GT(buried, 100u); // of parts that are left as they are
 }
 
+TEST(Unite, ContactsOfCutEdgesHaveKeysOfTheirOwn) {
+    Mesh bars{"bars", {}, {}};
+    for (const double at : {-0.3, 0.0, 0.3, 0.6}) {
+        append_box(bars, {-1, at, -0.05}, {1, at + 0.1, 0.05});
+        append_box(bars, {at, -1, -0.05}, {at + 0.1, 1, 0.05});
+    }
+    const auto lattice = Shape::make(bars), cube = Shape::make(box(0.8));
+    std::mt19937 random(7);
+    std::size_t edges = 0;
+    for (int i = 0; i < 60; ++i) {
+        const auto place = [&] { return random_unit(random) - 0.9; };
+        const double angle = 6.3 * random_unit(random), c = std::cos(angle), s = std::sin(angle);
+        const Pose at{.rotation = {c, -s, 0, s, c, 0, 0, 0, 1}, .translation = {place(), place(), 0.3 * place()}};
+        std::set<std::uint64_t> keys;
+        const auto found = collide(*lattice, {}, *cube, at);
+        for (const Contact& contact : found) {
+            EXPECT_TRUE(keys.insert(contact.key()).second) << i;
+            edges += contact.feature.kind == FeatureKind::edges;
+        }
+    }
+    EXPECT_GT(edges, 100u);
+}
+
+// What spans a hole may be cut or buried.
+TEST(Unite, HolesOfPartsThatCross) {
+    Mesh mesh{"tube in box", {}, {}};
+    append_box(mesh, {-1, -1, -1}, {1, 1, 1});
+    constexpr std::uint32_t sides = 60;
+    const auto base = static_cast<std::uint32_t>(mesh.vertices.size());
+    for (std::uint32_t i = 0; i < sides; ++i) // closed below, open above, inside the box
+        for (const double z : {-0.5, 0.5})
+            mesh.vertices.push_back(
+                {0.2 * std::cos(6.283185307179586 * i / sides), 0.2 * std::sin(6.283185307179586 * i / sides), z});
+    mesh.vertices.push_back({0, 0, -0.5});
+    for (std::uint32_t i = 0; i < sides; ++i) {
+        const std::uint32_t a = base + 2 * i, b = base + 2 * ((i + 1) % sides);
+        for (const auto& t : {std::array{a, b, b + 1}, {a, b + 1, a + 1}, {base + 2 * sides, b, a}})
+            mesh.triangles.push_back(t);
+    }
+    const PreparedMesh prepared = prepare_mesh(mesh);
+    EXPECT_EQ(prepared.report.holes, 1u);
+    EXPECT_EQ(prepared.report.spanning, 0u); // gone with the tube
+    EXPECT_EQ(prepared.report.triangles, 12u);
+    EXPECT_FALSE(closing_weld(prepared));
+}
+
+TEST(Unite, FarFromTheOrigin) {
+    std::mt19937 random(9);
+    for (const double offset : {0.0, 1e3, 1e5}) {
+        Mesh mesh{"far", {}, {}};
+        for (int i = 0; i < 10; ++i) {
+            const Mesh part = turned(box(1.3), random);
+            append(mesh, part, {offset + random_unit(random), random_unit(random), random_unit(random)});
+        }
+        const PreparedMesh united = prepare_mesh(mesh);
+        EXPECT_TRUE(united.report.closed && united.report.outward && !united.report.self_intersecting)
+            << offset << to_text(united.report);
+    }
+}
+
 TEST(Unite, OnceIsEnoughAndThreadsDoNotMatter) {
     std::mt19937 random(5);
     for (int i = 0; i < 10; ++i) {
