@@ -16,7 +16,8 @@
 // call from several threads, on the same shapes. Points are in the world frame unless said otherwise, lengths in
 // metres. A mesh's vertices are Shape::file_vertices(): not rounded. Where an answer is called exact, it is that for
 // the real numbers rotation * vertex + translation, with the doubles of the mesh and the pose, and no tolerance;
-// coordinates and entries of rotations below 1e-36 count as 0.
+// coordinates and entries of rotations below 1e-36 count as 0. Indices "in the file" from
+// MeshReport::file_triangles on are of triangles that span holes.
 
 namespace raycontact {
 
@@ -67,10 +68,10 @@ struct SignedDistance {
     Vec3 gradient; ///< unit, world frame: the way in which the distance grows; on the surface the face's normal
 };
 
-/// The signed distance of many points, in their order. Value and point are as right as those of closest_point(); which
-/// of two triangles is named that are equally far, to rounding, is not told. Of a mesh without an inside no distance is
-/// below 0. Points near each other in the list share work. threads 0: one per core; no bit depends on it. Throws
-/// InputError for pose and points as raycast(), and for more than 1024 threads.
+/// The signed distance of many points, in their order. Value, point and triangle are those of closest_point(). Of a
+/// mesh without an inside no distance is below 0. Points near each other share work, wherever they are in the list.
+/// threads 0: one per core; no bit depends on it. Throws InputError for pose and points as raycast(), and for more than
+/// 1024 threads.
 RAYCONTACT_API std::vector<SignedDistance> signed_distance(const Shape& shape, const Pose& pose,
                                                            std::span<const Vec3> points, std::uint32_t threads = 0);
 

@@ -49,11 +49,13 @@ public:
     std::span<const Vec3> file_vertices() const noexcept;
     /// Indices into vertices().
     std::span<const std::array<std::uint32_t, 3>> triangles() const noexcept;
-    std::span<const std::uint32_t> vertex_index() const noexcept;   ///< file index of each vertex
-    std::span<const std::uint32_t> triangle_index() const noexcept; ///< the same of each triangle, ascending
-    Vec3 centre() const noexcept;                                   ///< middle of the box, body frame
-    Vec3 box_min() const noexcept;                                  ///< body frame
-    Vec3 box_max() const noexcept;                                  ///< body frame
+    /// File index of each vertex, ascending; from report().file_vertices on: of those where parts cross.
+    std::span<const std::uint32_t> vertex_index() const noexcept;
+    /// The same of each triangle, ascending; from report().file_triangles on: of those that span holes.
+    std::span<const std::uint32_t> triangle_index() const noexcept;
+    Vec3 centre() const noexcept;   ///< middle of the box, body frame
+    Vec3 box_min() const noexcept;  ///< body frame
+    Vec3 box_max() const noexcept;  ///< body frame
     double radius() const noexcept; ///< largest distance of a vertex from the body origin, metres
     /// Metres. With Features::vertices it is what can pass through another mesh unseen, between two vertices.
     double longest_edge() const noexcept;

@@ -2,11 +2,11 @@
 """Questions about one or two shapes, without a scene.
 
 Each takes one item or many: shapes one or a list, poses (4, 4) or (..., 4, 4), points (3,) or (..., 3). They fit
-together as NumPy broadcasts: what is there once counts for all, and l shapes with poses (n, l, 4, 4) have answers
-(n, l). Of many, answers are arrays over the items, found by several threads; Ctrl-C ends them. Where docstrings say
-(n,), the batch may have more dimensions. Poses are rigid matrices from the body's frame to the world, None the
-identity; lengths are metres. Where an answer is called exact, it is that for the mesh's own double coordinates, rotated
-and moved, without a tolerance.
+together as NumPy broadcasts: what is there once counts for all, and l shapes with poses (n, l, 4, 4) have answers (n,
+l). Of many, answers are arrays over the items, found by several threads; Ctrl-C ends them. Where docstrings say (n,),
+the batch may have more dimensions. Poses are rigid matrices from the body's frame to the world, None the identity;
+lengths are metres. Triangles from `report.file_triangles` on span holes: the mesh does not have them. Where an answer
+is called exact, it is that for the mesh's own double coordinates, rotated and moved, without a tolerance.
 """
 
 from __future__ import annotations
