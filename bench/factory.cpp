@@ -79,11 +79,6 @@ struct Part {
     std::shared_ptr<const Shape> shape;
 };
 
-std::string kind_of(const MeshReport& report) {
-    if (!report.closed || !report.oriented) return "sheet";
-    return report.holes > 0 ? "solid with holes" : "solid";
-}
-
 /// Prints a line for each file that is there.
 std::map<std::string, Part> load_parts(const Options& options, const std::vector<Fit>& fits) {
     std::set<std::string> wanted, missing;

@@ -230,6 +230,32 @@ void measure_all(int rounds) {
     for (const std::uint32_t triangles : {200u, 902u, 4000u, 20000u, 82000u, 327680u}) measure(triangles, rounds);
 }
 
+/// What preparing takes, one thread: as it was before parts were united, of a closed mesh, and with a hole for each
+/// hundred triangles.
+void measure_preparing(int rounds) {
+    std::printf("triangles   closed, not united, topology   closed   open, holes left   open, holes spanned   (ms)\n");
+    for (const std::uint32_t triangles : {10'000u, 250'000u}) {
+        const Mesh closed = scenes::scene_model("knot", triangles).mesh;
+        Mesh open = closed;
+        open.triangles.clear();
+        for (std::size_t t = 0; t < closed.triangles.size(); ++t)
+            if (t % 100 != 50) open.triangles.push_back(closed.triangles[t]);
+        const auto ms = [&](const Mesh& mesh, const PrepareOptions& options) {
+            std::vector<double> times;
+            for (int round = 0; round < rounds; ++round) {
+                const double begin = peers::now().cpu;
+                static_cast<void>(prepare_mesh(mesh, options));
+                times.push_back(1e-3 * (peers::now().cpu - begin));
+            }
+            return peers::median(times);
+        };
+        std::printf("%9zu %30.1f %8.1f %18.1f %21.1f\n", closed.triangles.size(),
+                    ms(closed, {.overlaps = Overlaps::leave, .check = Check::topology, .threads = 1}),
+                    ms(closed, {.threads = 1}), ms(open, {.holes = Holes::none, .threads = 1}),
+                    ms(open, {.threads = 1}));
+    }
+}
+
 } // namespace
 
 void add_new_shape(CLI::App& app) {
@@ -238,7 +264,7 @@ void add_new_shape(CLI::App& app) {
     struct Options {
         int rounds = 5;
         std::optional<std::uint32_t> floor, sheet;
-        bool ahead = false;
+        bool ahead = false, preparing = false;
     };
     auto o = std::make_shared<Options>();
     add_number(*command, "--rounds", o->rounds, "by turns; figures are medians", 1, 1000);
@@ -246,9 +272,13 @@ void add_new_shape(CLI::App& app) {
         add_number(*command, "--floor", o->floor, "instead, a static ball of about N triangles meets its first body",
                    1u, 10'000'000u);
     add_number(*command, "--sheet", o->sheet, "the same for open ground", 1u, 10'000'000u)->excludes(floor);
+    command->add_flag("--preparing", o->preparing, "instead, prepare_mesh() of closed meshes and of some with holes")
+        ->excludes(floor);
     command->add_flag("--ahead", o->ahead, "with --floor or --sheet: after add_body()");
     command->callback([o] {
-        if (o->sheet)
+        if (o->preparing)
+            measure_preparing(o->rounds);
+        else if (o->sheet)
             measure_floor(sheet(*o->sheet), o->ahead);
         else if (o->floor)
             measure_floor(scenes::scene_model("sphere", *o->floor).mesh, o->ahead);

@@ -98,7 +98,9 @@ void check_claims(PreparedMesh& mesh) {
         throw Damage("is not as closed, manifold or oriented as its report says");
     if (said.checked) said.self_intersecting = said.self_intersecting || found.self_intersecting;
     said.outward = said.outward && found.outward;
-    said.border_edges = found.border_edges; // not recorded
+    said.border_edges = found.border_edges; // not recorded, as `spanning`
+    said.spanning = static_cast<std::uint64_t>(
+        std::ranges::count_if(mesh.triangle_index, [&](std::uint32_t t) { return t >= said.file_triangles; }));
 }
 
 } // namespace

@@ -167,6 +167,9 @@ struct Verdict {
 /// Of a mesh that has this report.
 RAYCONTACT_API Verdict verdict_of(const MeshReport& report);
 
+/// "solid", "solid with holes", which are spanned, or "sheet": closed or not, and wound alike everywhere.
+RAYCONTACT_API std::string kind_of(const MeshReport& report);
+
 /// As text for a person.
 RAYCONTACT_API std::string to_text(const MeshReport& report);
 /// As the JSON of `raycontact mesh --json`.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "broadphase/box_tree.h"
 
+#include "place_on_curve.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -24,23 +26,6 @@ float below(double x) {
 }
 float above(double x) {
     return -below(-x);
-}
-
-// Two zero bits before each of the lowest 21.
-std::uint64_t spread(std::uint64_t x) {
-    x &= 0x1fffff;
-    x = (x | x << 32) & 0x001f00000000ffff;
-    x = (x | x << 16) & 0x001f0000ff0000ff;
-    x = (x | x << 8) & 0x100f00f00f00f00f;
-    x = (x | x << 4) & 0x10c30c30c30c30c3;
-    return (x | x << 2) & 0x1249249249249249;
-}
-
-// A body's place on the curve (Morton 1966): the bits of its coordinates by turns.
-std::uint64_t place_on_curve(const Vec3& p, const Box& world, double scale) {
-    const Vec3 at = scale * (p - world.low);
-    const auto step = [](double x) { return static_cast<std::uint64_t>(std::clamp(x, 0.0, 2097151.0)); };
-    return spread(step(at.x)) << 2 | spread(step(at.y)) << 1 | spread(step(at.z));
 }
 
 } // namespace
@@ -101,8 +86,8 @@ void BoxTree::sort(std::span<const Box> boxes) {
     const double scale = longest > 0 ? 2097151 / longest : 0;
     keys_.clear();
     for (BodySlot i = 0; i < boxes.size(); ++i)
-        keys_.emplace_back(boxes[i].touches(boxes[i]) ? place_on_curve(boxes[i].middle(), world, scale) : last_place,
-                           i);
+        keys_.emplace_back(
+            boxes[i].touches(boxes[i]) ? place_on_curve(boxes[i].middle(), world.low, scale) : last_place, i);
     std::sort(keys_.begin(), keys_.end());
     order_.clear();
     places_.resize(boxes.size());

@@ -184,7 +184,7 @@ void EdgeStage::find(Workspace& work, Block& block, const Question& question, co
     std::ranges::sort(block.contacts.begin() + first, block.contacts.end(), [](const Contact& p, const Contact& q) {
         return p.key() != q.key() ? p.key() < q.key() : p.depth > q.depth;
     });
-    // Edges of pieces of one triangle may have one name: the deepest of them stands for all.
+    // Parts of one edge of the file have one name: the deepest stands for all.
     const auto same = [](const Contact& p, const Contact& q) { return p.key() == q.key(); };
     block.contacts.erase(std::unique(block.contacts.begin() + first, block.contacts.end(), same), block.contacts.end());
 }

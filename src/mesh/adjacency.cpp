@@ -38,6 +38,22 @@ std::vector<HalfEdge> sorted_half_edges(std::span<const Triangle> triangles) {
     return edges;
 }
 
+std::vector<std::pair<std::uint32_t, std::uint32_t>> border_edges(std::span<const HalfEdge> edges) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> border;
+    for_each_edge(edges, [&](std::span<const HalfEdge> sides) {
+        if (sides.size() % 2 != 0) border.emplace_back(sides[0].lo, sides[0].hi);
+    });
+    return border;
+}
+
+std::vector<std::uint32_t> border_vertices(std::span<const HalfEdge> edges) {
+    std::vector<std::uint32_t> ends;
+    for (const auto& [lo, hi] : border_edges(edges)) ends.insert(ends.end(), {lo, hi});
+    std::sort(ends.begin(), ends.end());
+    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+    return ends;
+}
+
 namespace {
 
 /// Pairs the sides of an edge that bound one solid. About the edge, as a right hand turns, each solid begins with a
@@ -54,7 +70,7 @@ void pair_by_angle(std::span<const HalfEdge> sides, std::span<const Triangle> tr
     using Side = std::tuple<double, bool, std::uint32_t>;
     std::vector<Side> around;
     for (const HalfEdge& side : sides)
-        around.emplace_back(std::atan2(dot(tip(side), second), dot(tip(side), first)), !side.forward, side.corner);
+        around.emplace_back(turn_of(dot(tip(side), first), dot(tip(side), second)), !side.forward, side.corner);
     std::ranges::sort(around);
     // Twice around, for a solid that begins last and ends first.
     const std::size_t count = around.size();

@@ -9,6 +9,7 @@
 #include <compare>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 namespace raycontact {
@@ -38,6 +39,17 @@ void for_each_edge(std::span<const HalfEdge> edges, Visit&& visit) {
         visit(edges.subspan(first, last - first));
     }
 }
+
+/// How many more triangles run along an edge than against it, from its lower vertex.
+inline int balance_of(std::span<const HalfEdge> sides) {
+    int balance = 0;
+    for (const HalfEdge& side : sides) balance += side.forward ? 1 : -1;
+    return balance;
+}
+
+/// The edges that an odd number of triangles meets, lower vertex first; and their vertices, rising.
+std::vector<std::pair<std::uint32_t, std::uint32_t>> border_edges(std::span<const HalfEdge> edges);
+std::vector<std::uint32_t> border_vertices(std::span<const HalfEdge> edges);
 
 /// Triangle across each edge (0-1, 1-2, 2-0): 0xffffffff at a border. Where several meet, solids touch in an edge: then
 /// the one across the solid, by the angles around the edge; where windings leave none, the lowest other index.

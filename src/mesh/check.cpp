@@ -34,9 +34,7 @@ void fill_topology(MeshReport& report, std::span<const Triangle> triangles, std:
         return triangles[side.triangle()][start % 3] == vertex ? start : end;
     };
     for_each_edge(edges, [&](std::span<const HalfEdge> sides) {
-        int balance = 0;
         for (const HalfEdge& side : sides) {
-            balance += side.forward ? 1 : -1;
             if (&side == &sides[0]) continue;
             if (fans.join(corner_at(side, side.lo), corner_at(sides[0], side.lo))) --fan_count;
             if (fans.join(corner_at(side, side.hi), corner_at(sides[0], side.hi))) --fan_count;
@@ -44,7 +42,7 @@ void fill_topology(MeshReport& report, std::span<const Triangle> triangles, std:
         report.border_edges += sides.size() % 2;
         report.manifold = report.manifold && sides.size() <= 2;
         // As many sides run one way as the other; of an odd number one is left over. A border always agrees.
-        report.oriented = report.oriented && std::abs(balance) <= static_cast<int>(sides.size() % 2);
+        report.oriented = report.oriented && std::abs(balance_of(sides)) <= static_cast<int>(sides.size() % 2);
         if (components.join(sides[0].lo, sides[0].hi)) --report.components;
     });
     report.closed = report.border_edges == 0;
@@ -133,14 +131,10 @@ void check_surface(PreparedMesh& prepared, const Patches& patches, std::span<con
     report.checked = true;
 }
 
-namespace {
-
 std::string kind_of(const MeshReport& report) {
     if (!report.closed || !report.oriented) return "sheet";
-    return report.holes > 0 ? "solid with holes" : "solid";
+    return report.spanning > 0 ? "solid with holes" : "solid";
 }
-
-} // namespace
 
 std::string to_text(const MeshReport& report) {
     const auto yes = [](bool value) { return value ? "yes" : "no"; };

@@ -18,6 +18,10 @@ public:
     friend Dyadic operator+(const Dyadic& a, const Dyadic& b) { return sum_of(a, b, b.sign_); }
     friend Dyadic operator-(const Dyadic& a, const Dyadic& b) { return sum_of(a, b, -b.sign_); }
     friend Dyadic operator*(const Dyadic& a, const Dyadic& b);
+    friend Dyadic abs(Dyadic a) {
+        a.sign_ *= a.sign_;
+        return a;
+    }
     /// a / b, right to some 1e-15 of itself. b: not 0.
     friend double ratio(const Dyadic& a, const Dyadic& b);
 

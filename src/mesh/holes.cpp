@@ -27,8 +27,7 @@ struct Side {
 std::vector<Side> missing_sides(std::span<const HalfEdge> edges) {
     std::vector<Side> missing;
     for_each_edge(edges, [&](std::span<const HalfEdge> sides) {
-        int balance = 0;
-        for (const HalfEdge& side : sides) balance += side.forward ? 1 : -1;
+        int balance = balance_of(sides);
         for (; balance > 0; --balance) missing.push_back({sides[0].hi, sides[0].lo});
         for (; balance < 0; ++balance) missing.push_back({sides[0].lo, sides[0].hi});
     });
@@ -114,8 +113,8 @@ private:
             double least = std::numeric_limits<double>::infinity();
             for (std::size_t i = place.begin; i < place.end; ++i) {
                 const Vec3 way = vertices_[sides_[i].to] - here;
-                double turn = std::atan2(dot(way, aside), dot(way, back) * length(place.normal));
-                if (turn <= 0) turn += 2 * std::numbers::pi;
+                double turn = turn_of(dot(way, back) * length(place.normal), dot(way, aside));
+                if (turn == 0) turn = 4; // back the same way: last
                 if (turn < least) std::tie(least, best) = std::pair(turn, i);
             }
         }

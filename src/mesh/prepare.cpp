@@ -60,21 +60,25 @@ void drop_triangles(PreparedMesh& prepared, std::span<const Vec3> vertices) {
                           + counted(dropped.split, "degenerate triangle"));
 }
 
-/// Replaces file vertices by the distinct ones in use.
-void number_vertices(const Mesh& mesh, PreparedMesh& prepared) {
-    std::vector<std::uint32_t> number(mesh.vertices.size(), 0);
+/// Replaces the vertices of the triangles by the distinct ones in use. vertices: what the triangles' corners are;
+/// index: their numbers in the file.
+void number_vertices(std::span<const Vec3> vertices, std::span<const std::uint32_t> index, PreparedMesh& prepared) {
+    std::vector<std::uint32_t> number(vertices.size(), 0), used;
+    std::vector<Vec3> places;
     for (const Triangle& t : prepared.triangles) {
         for (const std::uint32_t v : t) number[v] = 1;
     }
     for (std::size_t v = 0; v < number.size(); ++v) {
         if (number[v] == 0) continue;
-        number[v] = static_cast<std::uint32_t>(prepared.vertices.size());
-        prepared.vertices.push_back(mesh.vertices[v]);
-        prepared.vertex_index.push_back(static_cast<std::uint32_t>(v));
+        number[v] = static_cast<std::uint32_t>(places.size());
+        places.push_back(vertices[v]);
+        used.push_back(index[v]);
     }
     for (Triangle& t : prepared.triangles) {
         for (std::uint32_t& v : t) v = number[v];
     }
+    prepared.vertices = std::move(places);
+    prepared.vertex_index = std::move(used);
 }
 
 /// Welded by exact position; with `repair` without the triangles that are of no use.
@@ -83,14 +87,17 @@ PreparedMesh welded(const Mesh& mesh, bool repair) {
     prepared.report.file_vertices = mesh.vertices.size();
     prepared.report.file_triangles = mesh.triangles.size();
     if (repair) drop_triangles(prepared, mesh.vertices);
-    number_vertices(mesh, prepared);
+    std::vector<std::uint32_t> index(mesh.vertices.size());
+    std::iota(index.begin(), index.end(), 0u);
+    number_vertices(mesh.vertices, index, prepared);
     return prepared;
 }
 
-bool has_border(std::span<const HalfEdge> edges) {
-    bool any = false;
-    for_each_edge(edges, [&](std::span<const HalfEdge> sides) { any = any || sides.size() % 2 != 0; });
-    return any;
+/// Every edge is met as often one way as the other: closed, and wound alike everywhere.
+bool is_balanced(std::span<const HalfEdge> edges) {
+    bool balanced = true;
+    for_each_edge(edges, [&](std::span<const HalfEdge> sides) { balanced = balanced && balance_of(sides) == 0; });
+    return balanced;
 }
 
 /// A mesh on its way, with what is known of it. Each step names in the report what it did.
@@ -102,9 +109,12 @@ public:
 
     /// Joins vertices of borders that differ in their last digits, and splits triangles at T-junctions.
     void close_borders(const Mesh& mesh) {
-        if (!has_border(edges_)) return;
+        std::vector<std::uint32_t> ends = border_vertices(edges_);
+        if (ends.empty()) return;
         const double within = border_tolerance(prepared_.vertices);
-        if (const auto joined = join_borders(mesh, prepared_, edges_, within)) {
+        for (std::uint32_t& v : ends) v = prepared_.vertex_index[v];
+        // A small part of a large whole may be no longer than the last digit.
+        if (const auto joined = join_borders(mesh, ends, std::min(within, 1e-6 * diagonal()))) {
             prepared_ = welded(*joined, true);
             edges_ = sorted_half_edges(prepared_.triangles);
         }
@@ -168,6 +178,9 @@ public:
         if (holes.empty()) return;
         MeshReport& found = prepared_.report;
         const std::size_t first = prepared_.triangles.size(), number = found.file_triangles;
+        std::size_t spanning = 0;
+        for (const Hole& hole : holes) spanning += hole.triangles.size();
+        if (number + spanning > most_triangles) return; // no number is left for them
         const auto append = [&] {
             prepared_.triangles.resize(first);
             for (const Hole& hole : holes)
@@ -175,15 +188,9 @@ public:
             surface_.emplace(prepared_.triangles, exact_, executor_);
         };
         append();
-        if (number + prepared_.triangles.size() - first > most_triangles) { // no number is left for them
-            prepared_.triangles.resize(first);
-            surface_.emplace(prepared_.triangles, exact_, executor_);
-            return;
-        }
         if (!is_solid(prepared_, first, surface_->tree(), executor_)) {
-            const double small = 0.1 * length(box_of(exact_).high - box_of(exact_).low);
             std::erase_if(holes, [&](const Hole& hole) {
-                return which != Holes::of_all || !(hole.flat || size_of(hole, exact_) <= small);
+                return which != Holes::of_all || !(hole.flat || size_of(hole, exact_) <= 0.1 * diagonal());
             });
             append();
         }
@@ -202,34 +209,24 @@ public:
 
     /// Makes one solid of parts that lie in each other. Whether the mesh is known to be one.
     bool unite_parts(const std::string& name) {
-        fill_report(prepared_, edges_);
-        const MeshReport& found = prepared_.report;
-        if (!found.closed || !found.oriented) return false;
-        // What is rounded may cross itself again: then what is nearer than doubles can tell is drawn together.
-        const Vec3 reach = most(most(found.box_max, -1.0 * found.box_min), Vec3{}),
-                   size = found.box_max - found.box_min;
-        const double near = std::max(1e-12 * length(size), 1e-15 * length(reach));
-        double tolerance = 0;
-        constexpr int rounds = 5;
-        for (int round = 0, times = 0; round < rounds; ++round) {
-            const United united = unite(prepared_, patches_, exact_, surface_->tree(), tolerance, executor_);
+        if (!is_balanced(edges_)) return false;
+        const Box box = box_of(prepared_.vertices);
+        const double near = std::max(1e-12 * diagonal(), 1e-15 * length(most(box.high, -1.0 * box.low)));
+        constexpr int rounds = 5; // what is rounded may cross itself again
+        int unions = 0;
+        for (; unions < rounds; ++unions) {
+            const United united = unite(prepared_, patches_, exact_, surface_->tree(), near, unions > 0, executor_);
             if (united.done == United::Done::nothing) return true;
             if (united.done == United::Done::stays) return false;
-            const bool given_up = united.done == United::Done::given_up;
-            if (given_up && std::exchange(tolerance, near) > 0) {
-                report(times == 0 ? "left parts that cross as they are: too many, or too near"
-                                  : "left pieces of united parts that cross by a rounding");
-                return false;
-            }
-            tolerance = near;
-            if (given_up) continue;
-            take(united, times++ == 0);
+            if (united.done == United::Done::given_up) break;
+            take(united, unions == 0);
             exact_ = snapped(prepared_.vertices);
             surface_.emplace(prepared_.triangles, exact_, executor_);
             if (surface_->is_empty()) throw InputError(name + ": nothing is left of parts that lie in each other");
             find_edges();
         }
-        report("left pieces of united parts that cross by a rounding");
+        report(unions == 0 ? "left parts that cross as they are: too many, or too near"
+                           : "left pieces of united parts that cross by a rounding");
         return false;
     }
 
@@ -242,6 +239,10 @@ public:
     }
 
 private:
+    double diagonal() const {
+        const Box box = box_of(prepared_.vertices);
+        return length(box.high - box.low);
+    }
     void report(std::string text) { prepared_.report.repairs.push_back(std::move(text)); }
 
     void find_edges() {
@@ -251,42 +252,33 @@ private:
 
     /// The union instead of the mesh; what was rounded to one place is one vertex.
     void take(const United& united, bool tell) {
-        std::vector<Vec3> places(united.vertices);
+        const CutMesh& cut = united.cut;
+        std::vector<Vec3> places(cut.vertices);
         for (Vec3& p : places) p = p + Vec3{}; // turns -0 into 0
         const std::vector<std::uint32_t> lowest = lowest_equal(places);
-        constexpr std::uint32_t none = 0xffffffffu;
-        std::vector<std::uint32_t> number(places.size(), none), triangle_index, vertex_index;
-        std::vector<Triangle> triangles;
-        for (std::size_t i = 0; i < united.triangles.size(); ++i) {
-            const auto [a, b, c] = united.triangles[i];
+        std::vector<std::uint32_t> of, index(prepared_.vertex_index);
+        const auto file_vertices = static_cast<std::uint32_t>(prepared_.report.file_vertices);
+        const std::size_t given = index.size();
+        index.resize(places.size());
+        std::iota(index.begin() + static_cast<std::ptrdiff_t>(given), index.end(),
+                  std::max(file_vertices, prepared_.vertex_index.back() + 1));
+        prepared_.triangles.clear();
+        for (std::size_t i = 0; i < cut.triangles.size(); ++i) {
+            const auto [a, b, c] = cut.triangles[i];
             const Triangle t{lowest[a], lowest[b], lowest[c]};
-            if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
-            for (const std::uint32_t v : t) number[v] = 0;
-            triangles.push_back(t);
-            triangle_index.push_back(prepared_.triangle_index[united.of[i]]);
+            if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue; // rounded away
+            prepared_.triangles.push_back(t);
+            of.push_back(prepared_.triangle_index[cut.of[i]]);
         }
-        const std::size_t given = prepared_.vertices.size(), file_vertices = prepared_.report.file_vertices;
-        std::size_t next = std::max<std::size_t>(file_vertices, prepared_.vertex_index.back() + std::size_t{1});
-        std::vector<Vec3> vertices;
-        for (std::size_t v = 0; v < number.size(); ++v) {
-            if (number[v] == none) continue;
-            number[v] = static_cast<std::uint32_t>(vertices.size());
-            vertices.push_back(united.vertices[v]);
-            vertex_index.push_back(v < given ? prepared_.vertex_index[v] : static_cast<std::uint32_t>(next++));
-        }
-        for (Triangle& t : triangles)
-            for (std::uint32_t& v : t) v = number[v];
-        prepared_.vertices = std::move(vertices);
-        prepared_.vertex_index = std::move(vertex_index);
-        prepared_.triangles = std::move(triangles);
-        prepared_.triangle_index = std::move(triangle_index);
+        prepared_.triangle_index = std::move(of);
+        number_vertices(cut.vertices, index, prepared_);
         prepared_.report.spanning = static_cast<std::uint64_t>(
             prepared_.triangle_index.end()
             - std::ranges::lower_bound(prepared_.triangle_index, prepared_.report.file_triangles));
         if (!tell) return;
         std::string text = "united parts that lie in each other: split " + counted(united.split, "triangle")
                            + ", dropped " + counted(united.buried, "buried one");
-        if (next > file_vertices)
+        if (cut.vertices.size() > given)
             text += "; vertices from " + std::to_string(file_vertices) + " on are where they cross";
         report(text);
     }

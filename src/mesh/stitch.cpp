@@ -71,15 +71,12 @@ double border_tolerance(std::span<const Vec3> vertices) {
 Stitched stitch_borders(std::span<const Triangle> triangles, std::span<const Vec3> vertices,
                         std::span<const HalfEdge> edges, double within, Executor& executor) {
     Stitched result;
-    std::vector<std::uint32_t> corners, ends; // of border edges
+    std::vector<std::uint32_t> corners; // where border edges begin that one triangle has
     for_each_edge(edges, [&](std::span<const HalfEdge> sides) {
-        if (sides.size() % 2 == 0) return;
-        ends.insert(ends.end(), {sides[0].lo, sides[0].hi});
         if (sides.size() == 1) corners.push_back(sides[0].corner);
     });
     if (corners.empty()) return result;
-    std::ranges::sort(ends);
-    ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+    const std::vector<std::uint32_t> ends = border_vertices(edges);
     std::vector<Triangle> points; // as triangles, for the tree
     for (const std::uint32_t v : ends) points.push_back({v, v, v});
     std::vector<std::uint32_t> all(points.size());

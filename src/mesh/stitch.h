@@ -32,9 +32,8 @@ struct Stitched {
 Stitched stitch_borders(std::span<const Triangle> triangles, std::span<const Vec3> vertices,
                         std::span<const HalfEdge> edges, double within, Executor& executor);
 
-/// Moves vertices of borders to others of borders that are nearer than `within` metres and 1e-6 of the box's diagonal,
-/// as weld_mesh() chooses them; nothing where none is. prepared: of the mesh; edges: its sorted half edges.
-std::optional<Mesh> join_borders(const Mesh& mesh, const PreparedMesh& prepared, std::span<const HalfEdge> edges,
-                                 double within);
+/// Moves vertices of the borders of a mesh, of each place the lowest, to others of them that are nearer than `within`
+/// metres, as weld_mesh() chooses them; nothing where none is.
+std::optional<Mesh> join_borders(const Mesh& mesh, const std::vector<std::uint32_t>& vertices, double within);
 
 } // namespace raycontact

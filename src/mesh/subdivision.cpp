@@ -70,8 +70,7 @@ void Subdivision::cross_segments() {
             const Segment &s = segments_[i], &t = segments_[k];
             if (!cross(s, t)) continue;
             const auto away = [&](std::uint32_t p) {
-                const Dyadic area = area_of(table_[t.first], table_[t.second], table_[p], drop_);
-                return area.sign() < 0 ? Dyadic() - area : area;
+                return abs(area_of(table_[t.first], table_[t.second], table_[p], drop_));
             };
             points_.push_back(table_.add(between(table_[s.first], table_[s.second], away(s.first), away(s.second))));
         }
@@ -169,7 +168,22 @@ std::vector<Triangle> Subdivision::cut() {
         std::ranges::sort(along, [&](std::uint32_t p, std::uint32_t q) { return order_along(p, q) < 0; });
         for (std::size_t i = 1; i < along.size(); ++i) recover({along[i - 1], along[i]});
     }
+    for (Triangle& piece : pieces_) turn_as_whole(piece);
     return std::move(pieces_);
+}
+
+void Subdivision::turn_as_whole(Triangle& piece) const {
+    const auto turned = [&](auto&& fits) {
+        for (int turns = 0; turns < 3; ++turns, std::rotate(piece.begin(), piece.begin() + 1, piece.end()))
+            for (std::size_t k = 0; k < 3; ++k)
+                if (fits(k)) return true;
+        return false;
+    };
+    if (turned([&](std::size_t k) { return piece[k] == corners_[k]; })) return;
+    turned([&](std::size_t k) {
+        const std::uint32_t from = corners_[k], to = corners_[(k + 1) % 3];
+        return turn(from, to, piece[k]) == 0 && turn(from, to, piece[(k + 1) % 3]) == 0;
+    });
 }
 
 } // namespace raycontact

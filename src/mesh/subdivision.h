@@ -31,7 +31,8 @@ public:
     /// Adds the points where segments cross each other.
     void cross_segments();
     /// The pieces, which wind as the triangle does, and have no point of it but as corners; some, if it is too much
-    /// work.
+    /// work. Corner k of a piece, or else its edge from there on, is that of the triangle where the piece has it or a
+    /// part of it.
     std::vector<Triangle> cut();
 
 private:
@@ -43,6 +44,7 @@ private:
     void set(std::uint32_t piece, const Triangle& corners);
     void insert(std::uint32_t point);
     void recover(const Segment& segment);
+    void turn_as_whole(Triangle& piece) const;
     void spend(std::size_t steps) const { work_ -= std::min(work_, steps); }
 
     PointTable& table_;

@@ -4,6 +4,7 @@
 #include <raycontact/mesh.h>
 
 #include "executor/executor.h"
+#include "mesh/arrangement.h"
 #include "mesh/mesh_tree.h"
 #include "mesh/patches.h"
 
@@ -22,19 +23,18 @@ struct United {
         given_up, ///< it was too much work, or rounding decided
     };
     Done done = Done::nothing;
-    std::vector<Vec3> vertices{};      ///< those given, then those where triangles cross
-    std::vector<Triangle> triangles{}; ///< the surface of what has a winding number of at least 1
-    std::vector<std::uint32_t> of{};   ///< the triangle that each one is, or is a piece of; rising
-    std::size_t split = 0;             ///< triangles
-    std::size_t buried = 0;            ///< triangles that are gone as a whole
+    CutMesh cut{};          ///< the surface of what has a winding number of at least 1
+    std::size_t split = 0;  ///< triangles
+    std::size_t buried = 0; ///< triangles that are gone as a whole
 };
 
 /// The union of the solids that a mesh is made of: cuts triangles where they cross each other, and leaves out the
 /// pieces that do not have a winding number of 0 or less in front and of 1 or more behind. Of pieces that lie on each
-/// other one stays. Where triangles cross is found exactly, and then rounded to double, or is a vertex that is nearer
-/// than `tolerance` metres: so the union may cross itself again, by a rounding. The mesh must be closed and wound alike
-/// everywhere; patches: its own; exact: its vertices, snapped(); tree: over its triangles that have an area.
+/// other one stays. Points are rounded to double, so the union may cross itself again, by a rounding: then `again`,
+/// with which points nearer than `near` metres become one; so they do where it cannot be told otherwise what stays.
+/// The mesh must be closed and wound alike everywhere; patches: its own; exact: its vertices, snapped(); tree: over its
+/// triangles that have an area.
 United unite(const PreparedMesh& mesh, const Patches& patches, std::span<const Vec3> exact, const MeshTree& tree,
-             double tolerance, Executor& executor);
+             double near, bool again, Executor& executor);
 
 } // namespace raycontact

@@ -51,6 +51,13 @@ inline Vec3 most(const Vec3& a, const Vec3& b) {
 inline bool is_finite(const Vec3& a) {
     return std::isfinite(a.x) && std::isfinite(a.y) && std::isfinite(a.z);
 }
+/// Rises from 0 to 4 with the angle of (x, y), without a function that machines round differently; 0 of (0, 0).
+inline double turn_of(double x, double y) {
+    const double size = std::fabs(x) + std::fabs(y);
+    if (size == 0) return 0;
+    const double part = y / size; // of the quarters around (1, 0)
+    return x < 0 ? 2 - part : y < 0 ? 4 + part : part;
+}
 inline double axis(const Vec3& a, std::size_t k) {
     return k == 0 ? a.x : k == 1 ? a.y : a.z;
 }

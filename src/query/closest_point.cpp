@@ -1,143 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <raycontact/query.h>
 
-#include "executor/executor.h"
 #include "executor/float_environment.h"
 #include "query/checks.h"
-#include "query/inside.h"
 #include "query/nearest_triangle.h"
 #include "query/shape_pair.h"
 
-#include <algorithm>
-#include <cmath>
-#include <cstdint>
-#include <utility>
-
 namespace raycontact {
-
-namespace {
-
-/// In the body frame it is a point of doubles; from there on all is decided exactly.
-Vec3 in_body(const std::array<double, 9>& inverse, const Pose& pose, const Vec3& point) {
-    return own_point(rotated(inverse, point - pose.translation));
-}
-
-/// The bits of a number of 21, each followed by two zeros.
-std::uint64_t spread(std::uint64_t x) {
-    for (const auto& [shift, mask] :
-         {std::pair{32, 0x1f00000000ffffull}, std::pair{16, 0x1f0000ff0000ffull}, std::pair{8, 0x100f00f00f00f00full},
-          std::pair{4, 0x10c30c30c30c30c3ull}, std::pair{2, 0x1249249249249249ull}})
-        x = (x | x << shift) & mask;
-    return x;
-}
-
-/// The numbers of the points along a curve that fills space (Morton 1966), so that those in a row are near each other.
-std::vector<std::uint32_t> along_curve(std::span<const Vec3> points) {
-    const Box box = box_of(points);
-    const Vec3 size = box.high - box.low;
-    const double scale = 2097151 / std::max({size.x, size.y, size.z, 1e-300});
-    std::vector<std::pair<std::uint64_t, std::uint32_t>> places(points.size());
-    for (std::uint32_t i = 0; i < points.size(); ++i) {
-        const Vec3 at = scale * (points[i] - box.low);
-        const auto cell = [](double x) { return spread(static_cast<std::uint64_t>(std::min(x, 2097151.0))); };
-        places[i] = {cell(at.x) | cell(at.y) << 1 | cell(at.z) << 2, i};
-    }
-    std::ranges::sort(places);
-    std::vector<std::uint32_t> order(points.size());
-    std::ranges::transform(places, order.begin(), [](const auto& place) { return place.second; });
-    return order;
-}
-
-/// Signed distances of points one after the other, each from what is known of the last one.
-class SignedDistances {
-public:
-    SignedDistances(const Shape& shape, const Pose& pose) : shape_(shape), mesh_(shape.data()), pose_(pose) {}
-
-    SignedDistance of(const Vec3& sought) {
-        double farthest = any_distance;
-        if (face_ != Shape::no_triangle) {
-            const NearestFeature last = nearest_feature(mesh_, face_, sought);
-            farthest = last.distance() + 2 * last.error();
-        }
-        const auto nearest = nearest_triangle(mesh_, sought, farthest);
-        const NearestFeature& feature = nearest->feature;
-        const Vec3 normal = area_normal(nearest->face);
-        // No surface enters the ball around the last point that touches its nearest one.
-        const bool same_side = face_ != Shape::no_triangle && length(sought - point_) < 0.999 * distance_;
-        if (!same_side) inside_ = is_inside(sought, feature, normal);
-        face_ = nearest->face;
-        point_ = sought;
-        distance_ = feature.distance() - feature.error();
-
-        const double sign = inside_ ? -1 : 1;
-        const Vec3 away = rotated(pose_.rotation, feature.away());
-        const double metres = length(away);
-        // Where rounding decides the direction, the face does.
-        const bool apart = metres > 0 && distance_ > 0;
-        const Vec3 gradient = apart ? (sign / metres) * away : unit(rotated(pose_.rotation, normal));
-        return {sign * metres + 0.0, shape_.triangle_index()[face_], transform_point(pose_, feature.point()), gradient};
-    }
-
-private:
-    Vec3 area_normal(std::uint32_t face) const {
-        const auto [a, b, c] = mesh_.mesh.triangles[face];
-        const Vec3& corner = mesh_.file_vertex(a);
-        return cross(mesh_.file_vertex(b) - corner, mesh_.file_vertex(c) - corner);
-    }
-
-    bool is_inside(const Vec3& sought, const NearestFeature& feature, const Vec3& normal) const {
-        if (!shape_.has_inside()) return false;
-        // In front of a face of such a mesh is outside.
-        if (mesh_.header.outward != 0 && feature.is_face() && feature.distance() > 2 * feature.error()) {
-            const double height = dot(normal, feature.away());
-            if (std::fabs(height) > 0.5 * length(normal) * feature.distance()) return height < 0;
-        }
-        return raycontact::is_inside(mesh_, Pose{}, sought);
-    }
-
-    const Shape& shape_;
-    const ShapeData& mesh_;
-    const Pose& pose_;
-    std::uint32_t face_ = Shape::no_triangle; ///< of the last point
-    Vec3 point_;
-    double distance_ = 0; ///< metres, at most
-    bool inside_ = false;
-};
-
-} // namespace
 
 std::optional<ClosestPoint> closest_point(const Shape& shape, const Pose& pose, const Vec3& point, double max) {
     const FloatEnvironment environment;
     check_placed(pose, "pose of the mesh");
     check_place(point, "closest_point: the point");
     check_reach(max, "closest_point");
-    const Vec3 sought = in_body(inverse_of(pose.rotation), pose, point);
+    const Vec3 sought = in_body_frame(pose, inverse_of(pose.rotation), point);
     // What is there exactly is found; `max` decides at the end.
     const auto nearest = nearest_triangle(shape.data(), sought, max * (1 + 1e-12));
     if (!nearest) return std::nullopt;
     const double metres = length(rotated(pose.rotation, nearest->feature.away()));
     if (metres > max) return std::nullopt;
     return ClosestPoint{shape.triangle_index()[nearest->face], transform_point(pose, nearest->feature.point()), metres};
-}
-
-std::vector<SignedDistance> signed_distance(const Shape& shape, const Pose& pose, std::span<const Vec3> points,
-                                            std::uint32_t threads) {
-    const FloatEnvironment environment;
-    check_placed(pose, "pose of the mesh");
-    for (const Vec3& point : points) check_place(point, "signed_distance: a point");
-    Executor executor(threads_for(points.size(), threads));
-    if (points.empty()) return {};
-    constexpr std::uint32_t in_a_row = 1024;
-    const std::vector<std::uint32_t> order = along_curve(points);
-    const std::array<double, 9> inverse = inverse_of(pose.rotation);
-    std::vector<SignedDistance> found(points.size());
-    executor.each((points.size() + in_a_row - 1) / in_a_row, 1, [&](std::uint32_t row) {
-        SignedDistances distances(shape, pose);
-        const std::size_t first = std::size_t{row} * in_a_row;
-        for (std::size_t i = first; i < std::min(first + in_a_row, points.size()); ++i)
-            found[order[i]] = distances.of(in_body(inverse, pose, points[order[i]]));
-    });
-    return found;
 }
 
 } // namespace raycontact

@@ -11,6 +11,10 @@
 
 namespace raycontact {
 
+Vec3 in_body_frame(const Pose& pose, const std::array<double, 9>& inverse, const Vec3& point) {
+    return own_point(rotated(inverse, point - pose.translation));
+}
+
 NearestFeature nearest_feature(const ShapeData& mesh, std::uint32_t face, const Vec3& sought) {
     NumberedTriangle triangle{{}, mesh.mesh.triangles[face]};
     for (std::size_t k = 0; k < 3; ++k) triangle.corners[k] = own_point(mesh.file_vertex(triangle.vertices[k]));

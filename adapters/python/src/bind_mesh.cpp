@@ -45,6 +45,7 @@ void bind_report(nb::module_& m) {
         .def_ro("closed", &MeshReport::closed, "every edge has a triangle on both sides")
         .def_ro("border_edges", &MeshReport::border_edges, "edges met an odd number of times; 0: closed")
         .def_ro("holes", &MeshReport::holes, "spanned ones")
+        .def_prop_ro("kind", &kind_of, "'solid', 'solid with holes' or 'sheet'")
         .def_ro("spanning", &MeshReport::spanning, "triangles that span them: not in the file, numbered after its own")
         .def_ro("manifold", &MeshReport::manifold, "no edge has more than two triangles, no vertex more than one fan")
         .def_ro("oriented", &MeshReport::oriented, "across every shared edge the two triangles wind the same way")
