@@ -81,7 +81,7 @@ Json to_json(const Vec3& p) {
 }
 
 const char* name_of(FeatureKind kind) {
-    constexpr const char* names[] = {"vertex", "edges", "inside", "vertex_face"};
+    constexpr const char* names[] = {"vertex", "edges", "inside", "vertex_face", "faces"};
     return names[static_cast<std::size_t>(kind)];
 }
 
@@ -98,6 +98,9 @@ Json to_json(const Contact& contact) {
     if (contact.feature.kind == FeatureKind::edges) {
         json["edge_a"] = contact.feature.index_a;
         json["edge_b"] = contact.feature.index_b;
+    } else if (contact.feature.kind == FeatureKind::faces) {
+        json["triangle_a"] = contact.feature.index_a;
+        json["triangle_b"] = contact.feature.index_b;
     } else {
         json["vertex_body"] = contact.feature.source == Side::a ? "a" : "b";
         json["vertex"] = contact.feature.source_index();

@@ -119,6 +119,7 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, const SlotChanges& mo
         while (!failed.empty()) failed = replace(failed, stats);
         std::vector<Contact>& found = merge();
         Executor& executor = parts_.executor(); // of a part that is left
+        face_contacts_.run(executor, settings_, bodies, found);
         const ContactStore::Asked asked{!few_, asked_.pairs, pairs.closed()};
         reducer_.run(executor, settings_, bodies, {contacts_, left_out_, moved.is_next(seen_)}, found);
         contacts_.replace(executor, asked, found);
@@ -174,6 +175,7 @@ void NarrowPhase::trim(std::uint64_t pair_bytes) {
         if (parts_.has(i)) parts_[i].trim();
     for (Found& found : found_) found.contacts.shrink_to_fit();
     free_all(merged_, asked_);
+    face_contacts_.trim();
     reducer_.trim();
     contacts_.trim();
     left_out_.trim();

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "contacts/contact_store.h"
+#include "contacts/face_contacts.h"
 #include "contacts/reduce.h"
 #include "part/parts.h"
 #include "schedule/assignment.h"
@@ -89,6 +90,7 @@ private:
     SlotChanges::Seen seen_ = 0; ///< the last step: SlotChanges of bodies
     bool few_ = false;           ///< only pairs that may have changed are asked about
     PairList asked_;             ///< those
+    FaceContacts face_contacts_;
     ContactReducer reducer_;
     ContactStore contacts_, left_out_;
     std::uint64_t most_bytes_ = 0; ///< StepStats::pair_bytes, the most since memory was last trimmed

@@ -21,11 +21,13 @@ enum class FeatureKind : std::uint8_t {
     /// A vertex and a face that it is near or comes to, beside another contact of that vertex. Nothing touches there
     /// yet.
     vertex_face = 3,
+    /// A face of either body, of direction `weighted`: what the bodies share between them (docs/internals/patches.md).
+    faces = 4,
 };
 
 /// Whether a feature is named by what it is of either body, not of the source alone.
 constexpr bool names_both(FeatureKind kind) noexcept {
-    return kind == FeatureKind::edges || kind == FeatureKind::vertex_face;
+    return kind == FeatureKind::edges || kind == FeatureKind::vertex_face || kind == FeatureKind::faces;
 }
 
 /// One body of a pair.
@@ -37,9 +39,9 @@ struct ContactFeature {
     static constexpr std::uint32_t no_index = std::numeric_limits<std::uint32_t>::max();
 
     FeatureKind kind = FeatureKind::vertex; ///< what is in contact
-    Side source = Side::a;                  ///< whose vertex it is, where the ray begins; of edges a
+    Side source = Side::a;                  ///< whose vertex it is, where the ray begins; of edges and faces a
     /// Of the source a vertex, of the other body the triangle that was hit (`refined`: the nearest); of edges an edge
-    /// of either: 3 x its lowest triangle + its first corner there.
+    /// of either: 3 x its lowest triangle + its first corner there; of faces a triangle of either.
     std::uint32_t index_a = 0;
     std::uint32_t index_b = 0; ///< likewise, of body b
 
@@ -58,10 +60,12 @@ struct ContactFeature {
             return std::uint64_t{2} << 62 | std::uint64_t{index_a} << 31 | index_b;
         case FeatureKind::inside:
             return std::uint64_t{3} << 62 | side << 32 | own;
+        case FeatureKind::faces: // a mesh has fewer than 2^30 of either
+            return std::uint64_t{13} << 60 | std::uint64_t{index_a} << 30 | index_b;
         case FeatureKind::vertex_face:
             break;
         }
-        return std::uint64_t{7} << 61 | side << 60 | own << 30 | other_index(); // a mesh has fewer than 2^30 of either
+        return std::uint64_t{7} << 61 | side << 60 | own << 30 | other_index();
     }
     friend bool operator==(const ContactFeature&, const ContactFeature&) = default;
 };
@@ -79,8 +83,9 @@ struct Contact {
     /// (docs/internals/speculative.md).
     float depth = 0;
     float ray_length = 0; ///< |r|, metres from the point to the hit; of a speculative contact as long as the gap
-    /// Direction `weighted`: the share of the source's surface, m^2 (Shape::vertex_areas; of edges, a sixth of the mean
-    /// area of their triangles, of two at each edge). Other directions: 1.
+    /// Direction `weighted`, m^2: of faces, the area across the normal that they share; of others, a share of the
+    /// source's surface (Shape::vertex_areas; of edges, a sixth of the mean area of their triangles, of two at each
+    /// edge). Other directions: 1.
     float weight = 1;
     /// The witness points, world frame, metres: the source's vertex or a point of a's edge, and the point on the other
     /// body that lies `depth` along the normal from it (with direction `reprojected` in the plane of the face that was

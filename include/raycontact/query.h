@@ -101,6 +101,23 @@ RAYCONTACT_API bool intersects(const Shape& a, const Pose& pose_a, const Shape& 
 /// intersects() is false. Throws InputError as it does.
 RAYCONTACT_API std::optional<Vec3> common_point(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b);
 
+/// Where two solids press on each other: what lies between a convex part of the one surface and one of the other.
+struct ContactPatch {
+    double area = 0;   ///< across the normal, m^2
+    double volume = 0; ///< of what both share there, m^3
+    double depth = 0;  ///< the mean: volume / area, metres
+    Vec3 centre;       ///< of that volume, world frame: where its pressure acts
+    Vec3 normal;       ///< from a to b, unit, world frame: the way in which b leaves a there
+};
+
+/// The patches in which two solids overlap, the largest volume first. How finely a mesh is divided does not matter. A
+/// pressure that grows with depth pushes with stiffness x volume along the normal at the centre (Hasegawa and Sato
+/// 2004). In a corner each wall has a patch of its own; something round in a hole has one for each facet of the hole.
+/// None where surfaces touch to 1e-7 of their size, where one body pierces the other, or lies inside it
+/// (docs/internals/patches.md). Throws InputError for poses as raycast(), and for a mesh without an inside.
+RAYCONTACT_API std::vector<ContactPatch> contact_patches(const Shape& a, const Pose& pose_a, const Shape& b,
+                                                         const Pose& pose_b);
+
 /// Whether a point lies in a mesh that is closed and wound alike everywhere, or on its surface; false for others.
 /// Exact. The point is in the body frame. Throws InputError for a point that is not finite or beyond 1e30 m.
 RAYCONTACT_API bool contains(const Shape& shape, const Vec3& point);

@@ -5,7 +5,7 @@
 #include "clash/parting.h"
 #include "mesh/measure.h"
 #include "query/inside.h"
-#include "query/surfaces.h"
+#include "query/overlap_patches.h"
 
 #include <algorithm>
 #include <unordered_set>
@@ -20,21 +20,6 @@ PlacedBody body_of(const Part& part) {
     body.pose = part.pose;
     body.centred = centred_pose(*part.shape, part.pose);
     return body;
-}
-
-Loops loops_of(const PairMeshes& meshes, const ShapePair& pair) {
-    Loops loops;
-    std::array<PlacedFace, 2> faces;
-    each_touching_pair(pair, [&](std::uint32_t a, std::uint32_t b) {
-        faces[0].set(meshes, 0, a);
-        faces[1].set(meshes, 1, b);
-        for (std::size_t side = 0; side < 2; ++side)
-            for (std::uint32_t k = 0; k < 3; ++k) {
-                const std::uint32_t edge = edge_of(meshes.shape(side), faces[side].face, k);
-                if (Crossing seed; crosses(meshes, side, edge, faces[1 - side], seed)) loops.follow(meshes, seed);
-            }
-    });
-    return loops;
 }
 
 /// Whether no point of the first is outside of the second. Of two that cross, be it by rounding alone as faces are
@@ -92,7 +77,8 @@ void add_vertices_inside(std::optional<Box>& box, const Part& a, const Part& b) 
 Overlap overlap_of(const Part& a, const Part& b) {
     const PlacedBody body_a = body_of(a), body_b = body_of(b);
     const PairMeshes meshes(body_a, body_b);
-    const Loops loops = loops_of(meshes, ShapePair(*a.shape, a.pose, *b.shape, b.pose));
+    Loops loops;
+    follow_all(meshes, ShapePair(*a.shape, a.pose, *b.shape, b.pose), loops);
     Overlap overlap;
     overlap.crosses = !loops.crossings().empty();
     overlap.inside = lies_in(a, b, overlap.crosses) || lies_in(b, a, overlap.crosses);

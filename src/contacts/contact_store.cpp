@@ -22,6 +22,9 @@ ContactFeature feature_of(std::uint64_t key) {
     if (tag == 2)
         return {FeatureKind::edges, Side::a, static_cast<std::uint32_t>(key >> 31 & edge),
                 static_cast<std::uint32_t>(key & edge)};
+    if (key >> 60 == 13)
+        return {FeatureKind::faces, Side::a, static_cast<std::uint32_t>(key >> 30 & edge >> 1),
+                static_cast<std::uint32_t>(key & edge >> 1)};
     const bool inside = tag == 3;
     const bool of_a = inside ? (key >> 32 & 1) == 0 : tag == 0;
     const auto vertex = static_cast<std::uint32_t>(key);

@@ -72,7 +72,7 @@ bool Loops::walk(const PairMeshes& pair, const Crossing& seed, bool onward) {
             normal_faces_[side] = faces_[side].face;
             normals_[side] = pair.normal(side, faces_[side].face);
         }
-        steps.push_back({other, normals_});
+        steps.push_back({other, {faces_[0].face, faces_[1].face}, normals_});
         if (other.is_same(seed)) return true;
         if (other.is_same(mark)) {
             steps.clear();
@@ -91,13 +91,14 @@ bool Loops::walk(const PairMeshes& pair, const Crossing& seed, bool onward) {
 }
 
 void Loops::keep(const Crossing& seed, bool closed) {
-    Loop loop{static_cast<std::uint32_t>(crossings_.size()), 0, static_cast<std::uint32_t>(segments_.size()), 0, {}};
+    Loop loop{
+        static_cast<std::uint32_t>(crossings_.size()), 0, static_cast<std::uint32_t>(segments_.size()), 0, {}, false};
     const auto add = [this](const Crossing& c) {
         crossings_.push_back(c);
         remember(static_cast<std::uint32_t>(crossings_.size() - 1));
     };
-    const auto join = [this](const std::array<Vec3, 2>& normals, std::uint32_t from, std::uint32_t to) {
-        segments_.push_back({from, to, normals});
+    const auto join = [this](const Step& step, std::uint32_t from, std::uint32_t to) {
+        segments_.push_back({from, to, step.faces, step.normals});
     };
     const auto &back = steps_[0], &onward = steps_[1];
     for (std::size_t i = back.size(); i-- > 0;) add(back[i].next);
@@ -105,9 +106,9 @@ void Loops::keep(const Crossing& seed, bool closed) {
     for (std::size_t i = 0; i + (closed ? 1 : 0) < onward.size(); ++i) add(onward[i].next);
     loop.count = static_cast<std::uint32_t>(crossings_.size()) - loop.first;
     std::uint32_t at = loop.first;
-    for (std::size_t i = back.size(); i-- > 0; ++at) join(back[i].normals, at, at + 1);
+    for (std::size_t i = back.size(); i-- > 0; ++at) join(back[i], at, at + 1);
     for (std::size_t i = 0; i < onward.size(); ++i, ++at)
-        join(onward[i].normals, at, closed && i + 1 == onward.size() ? loop.first : at + 1);
+        join(onward[i], at, closed && i + 1 == onward.size() ? loop.first : at + 1);
     loop.segment_count = static_cast<std::uint32_t>(segments_.size()) - loop.first_segment;
     measure(loop);
     loops_.push_back(loop);
@@ -123,7 +124,8 @@ void Loops::measure(Loop& loop) const {
         loop.area = loop.area + 0.5 * cross(u, v);
         runs += dot(v - u, cross(s.normals[1], s.normals[0]));
     }
-    if (runs < 0) loop.area = -1.0 * loop.area;
+    loop.runs_back = runs < 0;
+    if (loop.runs_back) loop.area = -1.0 * loop.area;
 }
 
 } // namespace raycontact

@@ -13,13 +13,15 @@ struct Loop {
     std::uint32_t first, count;                 ///< crossings
     std::uint32_t first_segment, segment_count; ///< one less than crossings if it is not closed
     Vec3 area;                                  ///< vector area, m^2; points the way in which a leaves b
+    bool runs_back;                             ///< against the way in which `area` is run
     bool is_closed() const { return segment_count == count; }
 };
 
 /// From a crossing to the next one of its loop: there two triangles cross.
 struct LoopSegment {
-    std::uint32_t from, to;      ///< crossings
-    std::array<Vec3, 2> normals; ///< of the faces of a and b, outward
+    std::uint32_t from, to;             ///< crossings
+    std::array<std::uint32_t, 2> faces; ///< of a and b
+    std::array<Vec3, 2> normals;        ///< theirs, outward
 };
 
 /// Follows the loops of a pair from triangle to triangle. Keeps nothing but memory from one pair to the next.
@@ -37,6 +39,7 @@ private:
     /// The triangles between a crossing and the next one.
     struct Step {
         Crossing next;
+        std::array<std::uint32_t, 2> faces;
         std::array<Vec3, 2> normals;
     };
     bool walk(const PairMeshes& pair, const Crossing& seed, bool onward);

@@ -49,6 +49,14 @@ public:
         if (side == 0) return a_in_b_.vertex(v);
         return own.point(v) - perturbation() * (own.perturbations[v] + 4.0 * own.vertex_normals[v]);
     }
+    /// Where the file has it.
+    Vec3 unmoved_vertex(std::size_t side, std::uint32_t v) const {
+        const ShapeData& own = *shapes_[side];
+        const Vec3 p = own.file_vertex(v) - own.centre;
+        return side == 0 ? a_in_b_.placed(p) : p;
+    }
+    /// The origin of a body's centred frame.
+    Vec3 centre(std::size_t side) const { return side == 0 ? a_in_b_.pose.translation : Vec3{}; }
     Vec3 corner(std::size_t side, std::uint32_t face, std::size_t k) const {
         return vertex(side, shapes_[side]->mesh.triangles[face][k]);
     }

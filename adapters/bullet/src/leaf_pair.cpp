@@ -29,6 +29,7 @@ PlaceName name_of_triangle(const Leaf& leaf, int triangle) {
 
 PlaceName name_of_feature(const Leaf& leaf, const PointKey& key) {
     if (key.feature == FeatureKind::edges) return name_of_triangle(leaf, key.vertex / 3);
+    if (key.feature == FeatureKind::faces) return name_of_triangle(leaf, key.vertex);
     const Shape& shape = *leaf.converted.shape;
     const auto vertices = shape.vertex_index(); // ascending
     const auto at = std::ranges::lower_bound(vertices, static_cast<std::uint32_t>(key.vertex));

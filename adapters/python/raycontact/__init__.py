@@ -19,12 +19,14 @@ from .mesh import AssemblyPart, Mesh, load_assembly
 from .poses import nearest_rigid, pose, pose_from_quaternion
 from .queries import (
     ClosestPoint,
+    ContactPatches,
     Distance,
     RayHit,
     SignedDistance,
     closest_point,
     collide,
     common_point,
+    contact_patches,
     contains,
     distance,
     distance_grid,
@@ -42,9 +44,9 @@ __version__: str = _core.version
 
 __all__ = [
     "CONTACT_DTYPE", "AssemblyPart", "BodyClosestPoints", "BodyRayHits", "Clash", "Clashes", "ClosestPoint",
-    "CollisionManager", "Contacts", "DeviceInfo", "Distance", "FeatureKind", "InputError", "LostContacts", "Mass",
-    "Mesh", "MeshReport", "PairContacts", "RayHit", "RecordedStep", "Recorder", "Recording", "Scene", "Shape",
-    "SignedDistance", "StepStats", "clash", "closest_point", "collide", "common_point", "contains", "distance",
-    "distance_grid", "intersects", "list_devices", "load_assembly", "nearest_rigid", "pose", "pose_from_quaternion",
-    "raycast", "raycast_any", "show", "signed_distance",
+    "CollisionManager", "ContactPatches", "Contacts", "DeviceInfo", "Distance", "FeatureKind", "InputError",
+    "LostContacts", "Mass", "Mesh", "MeshReport", "PairContacts", "RayHit", "RecordedStep", "Recorder", "Recording",
+    "Scene", "Shape", "SignedDistance", "StepStats", "clash", "closest_point", "collide", "common_point",
+    "contact_patches", "contains", "distance", "distance_grid", "intersects", "list_devices", "load_assembly",
+    "nearest_rigid", "pose", "pose_from_quaternion", "raycast", "raycast_any", "show", "signed_distance",
 ]  # fmt: skip

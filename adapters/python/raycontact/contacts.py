@@ -39,12 +39,14 @@ class FeatureKind(IntEnum):
     EDGES: an edge of either body; they pass each other where the surfaces cross.
     INSIDE: the whole body lies inside the other mesh; its deepest vertex stands for it.
     VERTEX_FACE: a vertex and a face that it is near or comes to, beside another contact of that vertex.
+    FACES: a face of either body, of direction "weighted"; what the bodies share between them.
     """
 
     VERTEX = 0
     EDGES = 1
     INSIDE = 2
     VERTEX_FACE = 3
+    FACES = 4
 
 
 class Contacts:
@@ -95,7 +97,8 @@ class Contacts:
     @property
     def indices(self) -> NDArray[np.uint32]:
         """(n, 2) uint32: the feature on a and on b. Of the source a vertex of the mesh, of the other body the triangle
-        that was hit; of edges an edge of either: 3 x its lowest triangle + its first corner there."""
+        that was hit; of edges an edge of either: 3 x its lowest triangle + its first corner there; of faces a triangle
+        of either."""
         return self.data["indices"]
 
     @property
@@ -131,7 +134,7 @@ class Contacts:
 
     @property
     def weight(self) -> NDArray[np.float32]:
-        """(n,) float32: with direction "weighted" the share of the source's surface, m^2; else 1."""
+        """(n,) float32: with direction "weighted" an area, m^2: what faces share, or of the source's surface; else 1."""
         return self.data["weight"]
 
     @property
@@ -147,7 +150,10 @@ class Contacts:
         vertex_face = (
             np.uint64(7 << 61) | source << np.uint64(60) | own << np.uint64(30) | np.where(source == 0, other, one)
         )
-        return np.choose(data["kind"], (vertex, edges, inside, vertex_face)) if len(data) else np.empty(0, np.uint64)
+        faces = np.uint64(13 << 60) | one << np.uint64(30) | other
+        if not len(data):
+            return np.empty(0, np.uint64)
+        return np.choose(data["kind"], (vertex, edges, inside, vertex_face, faces))
 
     @property
     def touching(self: _Self) -> _Self:

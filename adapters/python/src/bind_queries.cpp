@@ -72,6 +72,28 @@ nb::tuple distances(const PlacedPairs& pairs, double max) {
     return nb::make_tuple(least.take(), point_a.take(), point_b.take(), triangle_a.take(), triangle_b.take());
 }
 
+nb::tuple all_contact_patches(const PlacedPairs& pairs) {
+    std::vector<std::vector<ContactPatch>> found(pairs.count);
+    pairs.for_each([&](std::size_t i, const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) {
+        found[i] = contact_patches(a, pose_a, b, pose_b);
+    });
+    std::size_t n = 0, at = 0;
+    for (const std::vector<ContactPatch>& patches : found) n += patches.size();
+    IndexColumn pair(n);
+    LengthColumn area(n), volume(n), depth(n);
+    VectorColumn centre(n), normal(n);
+    for (std::size_t i = 0; i < found.size(); ++i)
+        for (const ContactPatch& patch : found[i]) {
+            pair.set(at, static_cast<std::int64_t>(i));
+            area.set(at, patch.area);
+            volume.set(at, patch.volume);
+            depth.set(at, patch.depth);
+            centre.set(at, patch.centre);
+            normal.set(at++, patch.normal);
+        }
+    return nb::make_tuple(pair.take(), area.take(), volume.take(), depth.take(), centre.take(), normal.take());
+}
+
 /// Each pair's bodies are 2 i and 2 i + 1 of one scene that lives for the call. Pairs go in blocks, between which
 /// Ctrl-C counts.
 ReadOnlyArray collide(const PlacedPairs& pairs, const nb::dict& words) {
@@ -221,6 +243,7 @@ void bind_queries(nb::module_& m) {
     m.def("intersects", &intersects_all, "pairs"_a);
     m.def("common_points", &common_points, "pairs"_a);
     m.def("distances", &distances, "pairs"_a, "max"_a);
+    m.def("contact_patches", &all_contact_patches, "pairs"_a);
     m.def("closest_points", &closest_points, "shape"_a, "poses"_a, "points"_a, "max"_a, "threads"_a);
     m.def("signed_distances", &signed_distances, "shape"_a, "poses"_a, "points"_a, "threads"_a);
     m.def("ray_hits", &ray_hits, "shape"_a, "poses"_a, "origins"_a, "directions"_a, "max"_a, "threads"_a);

@@ -94,11 +94,11 @@ struct PointKey {
     int child0 = 0;      ///< index of the leaf shape, depth first, when body 0 is a compound; else 0
     int child1 = 0;      ///< likewise of body 1
     int vertex_body = 0; ///< 0: the feature belongs to the manifold's body 0; 1: to its body 1
-    /// Index in its file, mesh interface or shape (a convex shape's mesh is our own); of edges as Contact::vertex. A
-    /// ball's or capsule's: any number that stays.
+    /// Index in its file, mesh interface or shape (a convex shape's mesh is our own); of edges and faces as
+    /// ContactFeature::index_a. A ball's or capsule's: any number that stays.
     int vertex = 0;
     FeatureKind feature = FeatureKind::vertex; ///< what is in contact
-    /// Of edges that of the other body, as Contact::triangle; of the border of an open mesh in a convex shape 0 or 1,
+    /// Of edges and faces that of the other body, as ContactFeature::index_b; of the border of an open mesh in a convex shape 0 or 1,
     /// an end of what is inside; of other features 0.
     int other = 0;
     friend bool operator==(const PointKey&, const PointKey&) = default;
