@@ -56,9 +56,9 @@ TEST(SignedDistance, IsThatOfBruteForce) {
             inside += is_inside;
             EXPECT_NEAR(d.distance, (is_inside ? -1 : 1) * brute::distance(points[i], triangles), 1e-12);
             const auto numbers = shape->triangle_index(); // pieces of a triangle have its number
-            const auto own = std::ranges::equal_range(numbers, d.triangle);
+            const auto [first, last] = std::equal_range(numbers.begin(), numbers.end(), d.triangle);
             double nearest = std::numeric_limits<double>::infinity();
-            for (auto t = own.begin(); t != own.end(); ++t)
+            for (auto t = first; t != last; ++t)
                 nearest = std::min(nearest, brute::distance(d.point, triangles[std::size_t(t - numbers.begin())]));
             EXPECT_NEAR(nearest, 0, 1e-12);
             // Along the gradient one comes to the point, and the distance grows.
