@@ -50,6 +50,14 @@ def kind_of(report):
     return "united" if has_repair(report, "united") else "closed"
 
 
+def files_of(folder, options):
+    """The mesh files of a folder, or as many as asked for of them."""
+    files = sorted(f for f in folder.rglob("*") if f.suffix.lower() in ENDINGS and f.is_file())
+    if options.files and len(files) > options.files:
+        files = sorted(random.Random(options.seed).sample(files, options.files))
+    return files
+
+
 def load(file, slow):
     """The shape, or None where the file is refused."""
     begin = time.perf_counter()
@@ -70,9 +78,7 @@ def table_of(folders, options):
     by_kind = {kind: [] for kind in KINDS}
     rows = []
     for folder in folders:
-        files = sorted(f for f in folder.rglob("*") if f.suffix.lower() in ENDINGS and f.is_file())
-        if options.files and len(files) > options.files:
-            files = sorted(random.Random(options.seed).sample(files, options.files))
+        files = files_of(folder, options)
         begin = time.perf_counter()
         loaded = [(shape, file) for file in files if (shape := load(file, options.slow))]
         seconds = time.perf_counter() - begin

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "mesh/dyadic.h"
+#include "mesh/vector.h"
 
 #include <raycontact/pose.h>
 
@@ -35,6 +36,18 @@ inline const Dyadic& axis(const ExactVec3& a, std::size_t k) {
 /// Of the triangle a, b, c, twice its area long.
 inline ExactVec3 area_normal(const ExactVec3& a, const ExactVec3& b, const ExactVec3& c) {
     return cross(b - a, c - a);
+}
+
+/// Along its normal, of whatever length, and right to rounding: of a needle a cross product in double says anything.
+/// Zero of a triangle without an area.
+inline Vec3 along_normal(const Vec3& a, const Vec3& b, const Vec3& c) {
+    const Vec3 p = b - a, q = c - a, rough = cross(p, q);
+    constexpr double flattest = 0.01;
+    if (length(rough) > flattest * length(p) * length(q)) return rough;
+    const ExactVec3 exact = area_normal(a, b, c);
+    const Dyadic size = abs(exact.x) + abs(exact.y) + abs(exact.z);
+    if (size.sign() == 0) return {};
+    return {ratio(exact.x, size), ratio(exact.y, size), ratio(exact.z, size)};
 }
 
 } // namespace raycontact

@@ -184,8 +184,7 @@ std::optional<RayHit> raycast(const Shape& shape, const Pose& pose, const Vec3& 
     if (ray.hit.face == NONE) return std::nullopt;
     const ShapeData& mesh = shape.data();
     const auto [a, b, c] = mesh.mesh.triangles[ray.hit.face];
-    const Vec3& corner = mesh.file_vertex(a);
-    const Vec3 normal = cross(mesh.file_vertex(b) - corner, mesh.file_vertex(c) - corner);
+    const Vec3 normal = along_normal(mesh.file_vertex(a), mesh.file_vertex(b), mesh.file_vertex(c));
     return RayHit{shape.triangle_index()[ray.hit.face], ray.hit.distance, unit(rotated(pose.rotation, normal)),
                   origin + ray.hit.distance * ray.direction};
 }

@@ -3,6 +3,8 @@
 
 #include "executor/executor.h"
 #include "executor/float_environment.h"
+#include "mesh/exact_vector.h"
+#include "mesh/predicates.h"
 #include "place_on_curve.h"
 #include "query/checks.h"
 #include "query/inside.h"
@@ -10,7 +12,7 @@
 #include "query/shape_pair.h"
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 #include <cstdint>
 #include <utility>
 
@@ -44,10 +46,9 @@ public:
         }
         const auto nearest = nearest_triangle(mesh_, sought, farthest);
         const NearestFeature& feature = nearest->feature;
-        const Vec3 normal = area_normal(nearest->face);
         // No surface enters the ball around the last point that touches its nearest one.
         const bool same_side = face_ != Shape::no_triangle && length(sought - point_) < 0.999 * distance_;
-        if (!same_side) inside_ = is_inside(sought, feature, normal);
+        if (!same_side) inside_ = is_inside(sought, *nearest);
         face_ = nearest->face;
         point_ = sought;
         distance_ = feature.distance() - feature.error();
@@ -57,23 +58,29 @@ public:
         const double metres = length(away);
         // Where rounding decides the direction, the face does.
         const bool apart = metres > 0 && distance_ > 0;
-        const Vec3 gradient = apart ? (sign / metres) * away : unit(rotated(pose_.rotation, normal));
+        const Vec3 gradient = apart ? (sign / metres) * away : normal_of(face_);
         return {sign * metres + 0.0, shape_.triangle_index()[face_], transform_point(pose_, feature.point()), gradient};
     }
 
 private:
-    Vec3 area_normal(std::uint32_t face) const {
-        const auto [a, b, c] = mesh_.mesh.triangles[face];
-        const Vec3& corner = mesh_.file_vertex(a);
-        return cross(mesh_.file_vertex(b) - corner, mesh_.file_vertex(c) - corner);
+    std::array<Vec3, 3> corners(std::uint32_t face) const {
+        std::array<Vec3, 3> t;
+        for (std::size_t k = 0; k < 3; ++k) t[k] = own_point(mesh_.file_vertex(mesh_.mesh.triangles[face][k]));
+        return t;
     }
 
-    bool is_inside(const Vec3& sought, const NearestFeature& feature, const Vec3& normal) const {
+    Vec3 normal_of(std::uint32_t face) const {
+        const auto [a, b, c] = corners(face);
+        return unit(rotated(pose_.rotation, along_normal(a, b, c)));
+    }
+
+    bool is_inside(const Vec3& sought, const NearestTriangle& nearest) const {
         if (!shape_.has_inside()) return false;
-        // In front of a face of such a mesh is outside.
-        if (mesh_.header.outward != 0 && feature.is_face() && feature.distance() > 2 * feature.error()) {
-            const double height = dot(normal, feature.away());
-            if (std::fabs(height) > 0.5 * length(normal) * feature.distance()) return height < 0;
+        // In front of a face of such a mesh is outside. Exact, since in double the normal of a needle may be turned
+        // over.
+        if (mesh_.header.outward != 0 && nearest.feature.is_face()) {
+            const auto [a, b, c] = corners(nearest.face);
+            if (const int side = orient3d(a, b, c, sought)) return side > 0;
         }
         return raycontact::is_inside(mesh_, Pose{}, sought);
     }

@@ -56,9 +56,9 @@ TEST(SignedDistance, IsThatOfBruteForce) {
             inside += is_inside;
             EXPECT_NEAR(d.distance, (is_inside ? -1 : 1) * brute::distance(points[i], triangles), 1e-12);
             const auto numbers = shape->triangle_index(); // pieces of a triangle have its number
-            const auto own = std::ranges::equal_range(numbers, d.triangle);
+            const auto [first, last] = std::equal_range(numbers.begin(), numbers.end(), d.triangle);
             double nearest = std::numeric_limits<double>::infinity();
-            for (auto t = own.begin(); t != own.end(); ++t)
+            for (auto t = first; t != last; ++t)
                 nearest = std::min(nearest, brute::distance(d.point, triangles[std::size_t(t - numbers.begin())]));
             EXPECT_NEAR(nearest, 0, 1e-12);
             // Along the gradient one comes to the point, and the distance grows.
@@ -100,6 +100,40 @@ TEST(SignedDistance, OnTheSurfaceIsZeroWithTheFacesNormal) {
     }
     EXPECT_EQ(found[0].gradient, (Vec3{1, 0, 0}));
     EXPECT_EQ(found[1].gradient, (Vec3{0, 0, -1}));
+}
+
+/// A tetrahedron a, b, c, d, outward, with a vertex nearly on the edge from a to b: the first face is a needle.
+Mesh with_needle(const std::vector<Vec3>& corners) {
+    return {"needle", corners, {{0, 1, 4}, {1, 2, 4}, {2, 0, 4}, {1, 0, 3}, {2, 1, 3}, {0, 2, 3}}};
+}
+
+// In double the normal of a needle may be turned over, or zero.
+TEST(SignedDistance, BesideANeedleItsExactNormalTellsTheSide) {
+    const auto turned_over = Shape::make(with_needle({{-0.45965587724252066, 0.33283875707413163, -0.10894832405934592},
+                                                      {1.4387433191070917, 1.2164939413221438, -0.0918539343463328},
+                                                      {-0.4112487749637319, -0.9386885824959752, -0.5325452621953985},
+                                                      {-0.4178049772671864, -0.3363948218761836, 0.6485125595410481},
+                                                      {0.6972227968317419, 0.8713355283840913, -0.09853105516072523}}));
+    const Vec3 outside{0.6517484741579802, 0.8915272540032726, -0.19124847933330402};
+    const SignedDistance d = signed_distance(*turned_over, {}, std::span(&outside, 1))[0];
+    EXPECT_FALSE(contains(*turned_over, outside));
+    EXPECT_EQ(d.triangle, 0u);
+    EXPECT_NEAR(d.distance, 0.09976194989336054, 1e-15);
+    const auto hit =
+        raycast(*turned_over, {}, outside, {d.point.x - outside.x, d.point.y - outside.y, d.point.z - outside.z});
+    ASSERT_TRUE(hit && hit->triangle == 0);
+    EXPECT_NEAR(std::hypot(hit->normal.x - d.gradient.x, hit->normal.y - d.gradient.y, hit->normal.z - d.gradient.z), 0,
+                1e-12);
+
+    const auto zero = Shape::make(with_needle({{-0.8166383524576908, 0.8857065749330504, 1.0021008097398598},
+                                               {-0.4678733488362045, 1.9245897945636201, -0.21990606075893673},
+                                               {-0.7971898991784463, 0.14702214039854083, 0.007401235582690127},
+                                               {0.2698334281517525, 1.244921353787161, -1.4498645880824839},
+                                               {-0.586559060063065, 1.5710549142769423, 0.19594631273971141}}));
+    const Vec3 on{-0.547761537155973, 1.6866229761320282, 0.06000710135523969};
+    const SignedDistance at = signed_distance(*zero, {}, std::span(&on, 1))[0];
+    EXPECT_EQ(at.triangle, 0u);
+    EXPECT_NEAR(std::hypot(at.gradient.x, at.gradient.y, at.gradient.z), 1, 1e-12);
 }
 
 TEST(SignedDistance, OfASheetIsNeverNegative) {
