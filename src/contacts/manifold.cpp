@@ -12,6 +12,7 @@ namespace raycontact {
 namespace {
 
 constexpr std::size_t most_points = 4;
+constexpr double patch_cosine = 0.8;
 constexpr double like_normals = 0.98;
 // Of points that are present, on a squared distance and on a depth.
 constexpr double farther = 4, deeper = 1.1;
@@ -113,6 +114,22 @@ std::vector<std::uint32_t> choose_points(std::span<const ManifoldPoint> points, 
     std::rotate(chosen.begin(), chosen.end() - 1, chosen.end());
     while (!left.empty() && chosen.size() < most_points) take(*std::ranges::max_element(left, {}, by_depth));
     return chosen;
+}
+
+std::vector<std::uint32_t> choose_contacts(std::span<const ManifoldPoint> points, std::size_t most) {
+    std::vector<ManifoldPatch> patches;
+    join_patches(points, patch_cosine, patches);
+    std::vector<std::vector<std::uint32_t>> chosen;
+    std::size_t turns = 0;
+    for (const ManifoldPatch& patch : patches) {
+        chosen.push_back(choose_points(points, patch.points));
+        turns = std::max(turns, chosen.back().size());
+    }
+    std::vector<std::uint32_t> order;
+    for (std::size_t turn = 0; turn < turns; ++turn)
+        for (const std::vector<std::uint32_t>& of_patch : chosen)
+            if (turn < of_patch.size() && order.size() < most) order.push_back(of_patch[turn]);
+    return order;
 }
 
 } // namespace raycontact

@@ -12,7 +12,6 @@ namespace raycontact {
 
 namespace {
 
-constexpr double patch_cosine = 0.8;
 constexpr double one_place = 0.01; // of the smaller body's size
 
 constexpr std::uint32_t not_chosen = std::numeric_limits<std::uint32_t>::max();
@@ -48,32 +47,22 @@ bool choose_as_before(const ContactReducer::Last& last, std::span<const Contact>
 
 } // namespace
 
-// The patches take turns, the one with the deepest contact first: each gives its next point.
-void ContactReducer::rank(Work& work, std::span<const PlacedBody> bodies, const ContactStore& last,
-                          std::span<const Contact> contacts, std::span<std::uint32_t> ranks) const {
+void ContactReducer::rank(std::vector<ManifoldPoint>& points, std::span<const PlacedBody> bodies,
+                          const ContactStore& last, std::span<const Contact> contacts,
+                          std::span<std::uint32_t> ranks) const {
     const auto [a, b] = pair_of(contacts.front());
     const double place = one_place * smaller_size(bodies[a], bodies[b]);
-    work.points.clear();
+    points.clear();
     const std::span<const Contact> previous = last.of({a, b});
     auto old = previous.begin();
     for (const Contact& contact : contacts) {
-        ManifoldPoint& point = work.points.emplace_back(point_of(contact, place));
+        ManifoldPoint& point = points.emplace_back(point_of(contact, place));
         while (old != previous.end() && order_of(*old) < order_of(contact)) ++old;
         point.present = old != previous.end() && order_of(*old) == order_of(contact);
     }
-    work.patches.clear();
-    join_patches(work.points, patch_cosine, work.patches);
-    work.chosen.clear();
-    std::size_t most = 0;
-    for (const ManifoldPatch& patch : work.patches) {
-        work.chosen.push_back(choose_points(work.points, patch.points));
-        most = std::max(most, work.chosen.back().size());
-    }
     std::ranges::fill(ranks, not_chosen);
     std::uint32_t rank = 0;
-    for (std::size_t turn = 0; turn < most; ++turn)
-        for (const auto& chosen : work.chosen)
-            if (turn < chosen.size()) ranks[chosen[turn]] = rank++;
+    for (const std::uint32_t i : choose_contacts(points, contacts.size())) ranks[i] = rank++;
 }
 
 // First ranks, then depths, then the order of the contacts say who stays.
@@ -101,7 +90,7 @@ void ContactReducer::run(Executor& executor, const Settings& settings, std::span
     const std::uint32_t most_of_pair =
         settings.max_contacts_per_pair == 0 ? not_chosen : settings.max_contacts_per_pair;
     rows.each(executor, belongs, [&](std::uint32_t, std::size_t begin, std::size_t end) {
-        Work work;
+        std::vector<ManifoldPoint> points;
         for (std::size_t next = begin; begin < end; begin = next) {
             while (++next < end && belongs(next)) {
             }
@@ -109,7 +98,7 @@ void ContactReducer::run(Executor& executor, const Settings& settings, std::span
             const auto own = std::span<const Contact>(contacts).subspan(begin, next - begin);
             // A budget is shared out by ranks.
             if (settings.max_contacts == 0 && choose_as_before(last, own, ranks)) continue;
-            rank(work, bodies, last.kept, own, ranks);
+            rank(points, bodies, last.kept, own, ranks);
             for (std::uint32_t& one : ranks)
                 if (one >= most_of_pair) one = not_chosen;
         }

@@ -33,12 +33,7 @@ public:
     void trim();
 
 private:
-    struct Work {
-        std::vector<ManifoldPoint> points;
-        std::vector<ManifoldPatch> patches;
-        std::vector<std::vector<std::uint32_t>> chosen; ///< by patch
-    };
-    void rank(Work& work, std::span<const PlacedBody> bodies, const ContactStore& last,
+    void rank(std::vector<ManifoldPoint>& points, std::span<const PlacedBody> bodies, const ContactStore& last,
               std::span<const Contact> contacts, std::span<std::uint32_t> ranks) const;
     void keep_budget(std::uint64_t most, std::span<const Contact> contacts);
     void divide(Executor& executor, const RowSlices& rows, std::vector<Contact>& contacts);

@@ -210,23 +210,21 @@ public:
     /// Makes one solid of parts that lie in each other. Whether the mesh is known to be one.
     bool unite_parts(const std::string& name) {
         if (!is_balanced(edges_)) return false;
-        const Box box = box_of(prepared_.vertices);
-        const double near = std::max(1e-12 * diagonal(), 1e-15 * length(most(box.high, -1.0 * box.low)));
-        constexpr int rounds = 5; // what is rounded may cross itself again
-        int unions = 0;
-        for (; unions < rounds; ++unions) {
-            const United united = unite(prepared_, patches_, exact_, surface_->tree(), near, unions > 0, executor_);
-            if (united.done == United::Done::nothing) return true;
-            if (united.done == United::Done::stays) return false;
-            if (united.done == United::Done::given_up) break;
-            take(united, unions == 0);
-            exact_ = snapped(prepared_.vertices);
-            surface_.emplace(prepared_.triangles, exact_, executor_);
-            if (surface_->is_empty()) throw InputError(name + ": nothing is left of parts that lie in each other");
-            find_edges();
+        std::optional<PreparedMesh> given; // once there is a union
+        if (const auto is_solid = unite_in_rounds(name, given)) return *is_solid;
+        const PreparedMesh unrounded = given ? std::move(*given) : prepared_;
+        prepared_ = unrounded;
+        given.reset();
+        report("rounded coordinates to multiples of " + text_of(round_vertices())
+               + " m: parts that cross were too near to each other's vertices and edges");
+        renew();
+        if (const auto is_solid = unite_in_rounds(name, given)) return *is_solid;
+        if (!given) {
+            prepared_ = unrounded;
+            renew();
         }
-        report(unions == 0 ? "left parts that cross as they are: too many, or too near"
-                           : "left pieces of united parts that cross by a rounding");
+        report(given ? "left pieces of united parts that cross by a rounding"
+                     : "left parts that cross as they are: too many, or too near");
         return false;
     }
 
@@ -239,9 +237,42 @@ public:
     }
 
 private:
+    /// Nothing where some are left that cross. given: the mesh before the first union, if there was one.
+    std::optional<bool> unite_in_rounds(const std::string& name, std::optional<PreparedMesh>& given) {
+        const Box box = box_of(prepared_.vertices);
+        const double near = std::max(1e-12 * diagonal(), 1e-15 * length(most(box.high, -1.0 * box.low)));
+        constexpr int rounds = 5; // what is rounded may cross itself again
+        for (int unions = 0; unions < rounds; ++unions) {
+            const United united = unite(prepared_, patches_, exact_, surface_->tree(), near, unions > 0, executor_);
+            if (united.done == United::Done::nothing) return true;
+            if (united.done == United::Done::stays) return false;
+            if (united.done == United::Done::given_up) return std::nullopt;
+            if (!given) given = prepared_;
+            take(united, unions == 0);
+            renew();
+            if (surface_->is_empty()) throw InputError(name + ": nothing is left of parts that lie in each other");
+        }
+        return std::nullopt;
+    }
+
     double diagonal() const {
         const Box box = box_of(prepared_.vertices);
         return length(box.high - box.low);
+    }
+    /// To multiples of a power of two, 2^-32 of the diagonal or a little more; returns it. Places that rounding alone
+    /// keeps apart are then one, or as far apart as that.
+    double round_vertices() {
+        int exponent = 0;
+        std::frexp(diagonal(), &exponent);
+        const double step = std::ldexp(1.0, exponent - 32);
+        const auto rounded = [&](double x) { return step * std::round(x / step); };
+        for (Vec3& v : prepared_.vertices) v = {rounded(v.x), rounded(v.y), rounded(v.z)};
+        return step;
+    }
+    void renew() {
+        exact_ = snapped(prepared_.vertices);
+        surface_.emplace(prepared_.triangles, exact_, executor_);
+        find_edges();
     }
     void report(std::string text) { prepared_.report.repairs.push_back(std::move(text)); }
 

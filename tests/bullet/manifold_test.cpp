@@ -83,7 +83,7 @@ TEST(Manifold, OfDirectionWeightedIsOfFaces) {
             ASSERT_GT(c.weight, 0);
             ASSERT_LT(c.weight, 1); // the tori's cross section
         }
-        for (const btRigidBody* body : world.bodies) ASSERT_GT(body->getWorldTransform().getOrigin().z(), -0.6);
+        for (const auto& body : world.bodies) ASSERT_GT(body->getWorldTransform().getOrigin().z(), -0.6);
     }
     EXPECT_GT(faces, 1000u);
 }

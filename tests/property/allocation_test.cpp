@@ -84,7 +84,9 @@ void expect_none_after_warm_up(Features features, const std::shared_ptr<const Sh
                 settings.method = method;
                 settings.execution.devices = "cpu"; // a trial of another allocates
                 settings.execution.threads = threads;
-                settings.direction = given ? Direction::weighted : Direction::reprojected;
+                // Patches of faces are made anew in each step.
+                const Direction other = features == Features::edges ? Direction::ray : Direction::weighted;
+                settings.direction = given ? other : Direction::reprojected;
                 Scene scene(settings);
                 for (std::uint32_t body = 0; body < 64; ++body) scene.add(shape);
                 std::vector<Pair> pairs;

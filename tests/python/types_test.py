@@ -154,7 +154,7 @@ def test_meshes_of_trimesh_fit(mypy, tmp_path):
 @pytest.mark.parametrize("command", [["check"], ["format", "--diff"]], ids=" ".join)
 def test_ruff_finds_nothing(command):
     pytest.importorskip("ruff", reason="ruff is not installed")
-    folders = ["adapters/python", "tests/python", "bench/python"]
+    folders = ["adapters/python", "adapters/mujoco", "tests/python", "tests/mujoco", "bench/python"]
     done = subprocess.run(
         [sys.executable, "-m", "ruff", *command, "--no-cache", *folders], capture_output=True, text=True, cwd=ROOT
     )

@@ -134,7 +134,7 @@ class Contacts:
 
     @property
     def weight(self) -> NDArray[np.float32]:
-        """(n,) float32: with direction "weighted" an area, m^2: what faces share, or of the source's surface; else 1."""
+        """(n,) float32: with direction "weighted" an area, m^2: what faces share, or of a surface; else 1."""
         return self.data["weight"]
 
     @property

@@ -242,7 +242,7 @@ def contact_patches(
     *,
     threads: int = 0,
 ) -> ContactPatches:
-    """The patches in which solids overlap: area, mean depth, centre and normal of each, however finely they are divided.
+    """The patches in which solids overlap: area, mean depth, centre, normal; however finely meshes are divided.
 
     A pressure that grows with depth pushes with stiffness x volume along the normal at the centre (Hasegawa and Sato
     2004). In a corner each wall has its own patch. Where one mesh pierces the other, or lies inside it, there is none.
@@ -379,5 +379,6 @@ def contains(
 
 __all__ = [
     "ClosestPoint", "ContactPatches", "Distance", "RayHit", "SignedDistance", "closest_point", "collide",
-    "common_point", "contact_patches", "contains", "distance", "distance_grid", "intersects", "raycast", "raycast_any", "signed_distance",
+    "common_point", "contact_patches", "contains", "distance", "distance_grid", "intersects", "raycast", "raycast_any",
+    "signed_distance",
 ]  # fmt: skip

@@ -5,6 +5,7 @@
 
 #include <raycontact/collide.h>
 #include <raycontact/error.h>
+#include <raycontact/mass.h>
 #include <raycontact/mesh.h>
 #include <raycontact/query.h>
 #include <raycontact/shape.h>
@@ -110,6 +111,45 @@ TEST(Unite, BoxesThatShareFacesEdgesAndCorners) {
 }
 
 // Ridges on ridges, a prism of many sides through a plate: many cuts of one triangle.
+/// A rectangle (r, z) turned about z.
+Mesh ring(int around, double inner, double outer, double low, double high) {
+    Mesh mesh{"ring", {}, {}};
+    const std::array<std::array<double, 2>, 4> profile{{{inner, low}, {outer, low}, {outer, high}, {inner, high}}};
+    for (int i = 0; i < around; ++i)
+        for (const auto& [r, z] : profile) {
+            const double angle = 2 * 3.14159265358979323846 * i / around;
+            mesh.vertices.push_back({r * std::cos(angle), r * std::sin(angle), z});
+        }
+    const auto at = [&](int i, int k) { return static_cast<std::uint32_t>(i % around * 4 + k % 4); };
+    for (int i = 0; i < around; ++i)
+        for (int k = 0; k < 4; ++k) {
+            mesh.triangles.push_back({at(i, k), at(i + 1, k), at(i + 1, k + 1)});
+            mesh.triangles.push_back({at(i, k), at(i + 1, k + 1), at(i, k + 1)});
+        }
+    return mesh;
+}
+
+// Corners of formulas lie on edges of each other but for the last bit: a cup of a wall and a bottom.
+TEST(Unite, PartsWhoseCornersNearlyLieOnEachOthersEdges) {
+    struct Cup {
+        double wall_low, bottom_low;
+    };
+    for (const Cup cup : {Cup{0, 0}, Cup{-0.01, 0}, Cup{0, -0.01}})
+        for (const int around : {3, 4, 5, 8, 12, 16, 32, 64}) {
+            const auto shape = Shape::make(all_of(
+                {ring(around, 0.036, 0.04, cup.wall_low, 0.1), ring(around, 0.001, 0.038, cup.bottom_low, 0.006)}));
+            ASSERT_TRUE(shape->has_inside()) << around;
+            EXPECT_TRUE(verdict_of(shape->report()).good) << around << ", " << cup.wall_low;
+            const double square = 0.5 * around * std::sin(2 * 3.14159265358979323846 / around); // of radius 1
+            const auto band = [&](double inner, double outer) { return square * (outer * outer - inner * inner); };
+            const double below = std::max(cup.wall_low - cup.bottom_low, 0.0);
+            const double volume = band(0.036, 0.04) * (0.1 - cup.wall_low) + band(0.001, 0.038) * below
+                                  + band(0.001, 0.036) * (0.006 - std::max(cup.wall_low, cup.bottom_low));
+            const double own = mass_of(shape->file_vertices(), shape->triangles()).volume;
+            EXPECT_NEAR(own, volume, 1e-7 * volume) << around << ", " << cup.wall_low << ", " << cup.bottom_low;
+        }
+}
+
 TEST(Unite, AFineRodThroughAPlate) {
     Mesh rod{"rod", {{0, 0, -1}, {0, 0, 1}}, {}};
     constexpr std::uint32_t sides = 96;
