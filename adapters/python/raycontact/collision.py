@@ -14,12 +14,13 @@ from typing import Any, NamedTuple, Optional, TypeVar, cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from . import _core
 from ._arrays import as_pose
 from ._boxes import Boxes, Pairs, boxes_of, pairs_within, some_near_pairs
 from ._core import InputError
 from ._shared_shapes import shared_shape
 from .contacts import FeatureKind, PairContacts
-from .queries import closest_point, collide, distance, intersects
+from .queries import closest_point, collide, distance
 from .shape import Shape, ShapeLike
 
 _Value = TypeVar("_Value")
@@ -185,7 +186,10 @@ class CollisionManager:
 
     def __init__(self) -> None:
         self._objects: dict[Hashable, _Object] = {}
+        self._allowed: set[frozenset[Hashable]] = set()
         self._listed: Optional[_Objects] = None
+        self._placed: Optional[_core.PlacedList] = None
+        self._rows: dict[Hashable, int] = {}
 
     def add_object(self, name: Hashable, mesh: ShapeLike, transform: Optional[ArrayLike] = None) -> Shape:
         """Adds an object, in place of any that has the name. transform: (4, 4); None: the identity.
@@ -194,20 +198,32 @@ class CollisionManager:
         changed.
         """
         self._objects[name] = _place(mesh, transform, f"object {name!r}")
-        self._listed = None
+        self._listed = self._placed = None
         return self._objects[name].shape
 
     def remove_object(self, name: Hashable) -> None:
         """Removes an object. Raises InputError where there is no such name."""
         self._find(name)
         del self._objects[name]
-        self._listed = None
+        self._allowed = {pair for pair in self._allowed if name not in pair}
+        self._listed = self._placed = None
 
     def set_transform(self, name: Hashable, transform: ArrayLike) -> None:
         """Moves an object: (4, 4), in place of the transform it had. Raises InputError as the class says."""
         found = self._find(name)
-        self._objects[name] = found._replace(pose=_rigid(transform, f"object {name!r}"))
         self._listed = None
+        if self._placed is not None and self._placed.set_pose(self._rows[name], transform):
+            found.pose[:] = transform
+            return
+        found.pose[:] = _rigid(transform, f"object {name!r}")
+        self._placed = None
+
+    def allow_collision(self, name: Hashable, other: Hashable, allowed: bool = True) -> None:
+        """Leaves a pair of objects out of `in_collision_internal`, as neighbours of an arm that always touch; False:
+        asks it again. trimesh has no such. Raises InputError where there is no such name."""
+        self._find(name), self._find(other)
+        (self._allowed.add if allowed else self._allowed.discard)(frozenset((name, other)))
+        self._placed = None
 
     # What these give depends on what is asked for, so to a type checker it is Any, as of trimesh.
 
@@ -224,10 +240,11 @@ class CollisionManager:
         with return_data of it and a list of ContactData, with both of all three. The list has at least one of each pair
         that collides. The mesh's name there is "__external".
         """
-        one, mine = _external(mesh, transform), self._list()
+        other = _one_placed(mesh, transform)
         if not (return_names or return_data):
-            return _any_collides(mine, one)
-        i, j = _colliding(mine, one)
+            return self._place_all().any(other)
+        one, mine = _external(mesh, transform), self._list()
+        i, j = self._place_all().all(other)
         names = {mine.names[k] for k in i.tolist()}
         data = _contacts(mine, one, i, j) if return_data else []
         return _answer(bool(len(i)), return_names, names, return_data, data)
@@ -239,10 +256,10 @@ class CollisionManager:
         return_data of it and a list of ContactData, with both of all three. A pair has its names sorted; names that do
         not compare stand in the order in which they were added.
         """
-        mine = self._list()
         if not (return_names or return_data):
-            return _any_collides(mine, None)
-        i, j = _colliding(mine, None)
+            return self._place_all().any(None)
+        mine = self._list()
+        i, j = self._place_all().all(None)
         i, j = _sorted_by_name(mine, i, j)  # normals lead from the first name to the second
         names = {(mine.names[k], mine.names[m]) for k, m in zip(i.tolist(), j.tolist())}
         data = _contacts(mine, mine, i, j) if return_data else []
@@ -258,8 +275,8 @@ class CollisionManager:
         """
         mine, others = self._list(), _list_of(other_manager)
         if not (return_names or return_data):
-            return _any_collides(mine, others)
-        i, j = _colliding(mine, others)
+            return self._place_all().any(other_manager._place_all())
+        i, j = self._place_all().all(other_manager._place_all())
         names = {(mine.names[k], others.names[m]) for k, m in zip(i.tolist(), j.tolist())}
         data = _contacts(mine, others, i, j) if return_data else []
         return _answer(bool(len(i)), return_names, names, return_data, data)
@@ -329,6 +346,16 @@ class CollisionManager:
         except KeyError:
             raise InputError(f"object {name!r}: is not in the manager; add it with add_object") from None
 
+    def _place_all(self) -> _core.PlacedList:
+        if self._placed is None:
+            objects = self._objects.values()
+            poses = np.array([item.pose for item in objects]).reshape(-1, 4, 4)
+            self._placed = _core.PlacedList([item.shape._core for item in objects], poses)
+            self._rows = {name: row for row, name in enumerate(self._objects)}
+            pairs = (sorted(self._rows[name] for name in pair) for pair in self._allowed if len(pair) == 2)
+            self._placed.set_allowed([(i, j) for i, j in pairs])
+        return self._placed
+
     def _list(self) -> _Objects:
         if self._listed is None:
             self._listed = _Objects(self._objects)
@@ -384,6 +411,11 @@ def _place(mesh: ShapeLike, transform: Optional[ArrayLike], what: str) -> _Objec
     except InputError as error:
         raise InputError(f"{what}: {error}") from None
     return _Object(shape, shape.box, pose)
+
+
+def _one_placed(mesh: ShapeLike, transform: Optional[ArrayLike]) -> _core.PlacedList:
+    one = _place(mesh, transform, "mesh")
+    return _core.PlacedList([one.shape._core], one.pose[None])
 
 
 def _external(mesh: ShapeLike, transform: Optional[ArrayLike]) -> _Objects:
@@ -448,29 +480,6 @@ def _slices(count: int, first: int, most: int) -> Iterator[slice]:
 def _candidates(a: _Objects, b: Optional[_Objects], gap: float) -> Iterator[Pairs]:
     """Pairs of a and b, or within a, whose boxes are at most `gap` metres apart."""
     return pairs_within(gap, a.boxes, None if b is None else b.boxes)
-
-
-def _any_collides(a: _Objects, b: Optional[_Objects]) -> bool:
-    """Whether any pair does, of a and b or within a; ends soon after the first one found."""
-    for pairs in _candidates(a, b, 0.0):
-        for part in _slices(len(pairs.a), 64, _MOST_ASKED):
-            if _ask(intersects, a, a if b is None else b, pairs.a[part], pairs.b[part]).any():
-                return True
-    return False
-
-
-def _colliding(a: _Objects, b: Optional[_Objects]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """All pairs that do, in order."""
-    found_i, found_j = [np.empty(0, np.int64)], [np.empty(0, np.int64)]
-    for pairs in _candidates(a, b, 0.0):
-        for part in _slices(len(pairs.a), _MOST_ASKED, _MOST_ASKED):
-            i, j = pairs.a[part], pairs.b[part]
-            hit = _ask(intersects, a, a if b is None else b, i, j)
-            found_i.append(i[hit])
-            found_j.append(j[hit])
-    i, j = np.concatenate(found_i), np.concatenate(found_j)
-    order = np.lexsort((j, i))
-    return i[order], j[order]
 
 
 def _sorted_by_name(

@@ -21,7 +21,7 @@ from ._arrays import Batch, as_count, as_length, as_points, as_poses
 from ._core import InputError
 from .contacts import PairContacts
 from .scene import as_settings
-from .shape import ShapeLike, Shapes, as_shape, as_shapes
+from .shape import Shape, ShapeLike, Shapes, as_shape, as_shapes
 
 
 class Distance(NamedTuple):
@@ -191,6 +191,10 @@ def intersects(
 
     Arguments and errors are those of `collide`. Gives a bool, or (n,) bool for lists.
     """
+    if type(a) is Shape and type(b) is Shape and threads == 0:
+        one = _core.one_intersects(a._core, pose_a, b._core, pose_b)
+        if one is not None:
+            return one
     pairs = _Pairs(a, b, pose_a, pose_b, threads)
     (found,) = pairs.answers((_core.intersects(pairs.core).view(np.bool_),))
     return found
@@ -230,6 +234,10 @@ def distance(
     Arguments and errors are those of `collide`, and max: metres, beyond which it is not looked for; a small one saves
     work. One that is negative or NaN raises InputError.
     """
+    if type(a) is Shape and type(b) is Shape and type(max) is float and threads == 0:
+        one = _core.one_distance(a._core, pose_a, b._core, pose_b, max)
+        if one is not None:
+            return Distance(*one)
     pairs = _Pairs(a, b, pose_a, pose_b, threads)
     return Distance(*pairs.answers(_core.distances(pairs.core, as_length(max, "max"))))
 
@@ -266,6 +274,10 @@ def closest_point(
     Raises InputError for a point that is not finite, a pose that is not finite and rigid to 1e-4, a `max` that is
     negative or NaN, and where numbers of points and poses differ; each may be there once for all.
     """
+    if type(shape) is Shape and type(points) is np.ndarray and type(max) is float and threads == 0:
+        one = _core.one_closest_point(shape._core, pose, points, max)
+        if one is not None:
+            return ClosestPoint(*one)
     placed = _Placed(pose, points=points)
     found = _core.closest_points(
         as_shape(shape)._core,
@@ -370,6 +382,10 @@ def contains(
 
     Exact. Arguments and errors are those of `closest_point`. Gives a bool, or (n,) bool for lists.
     """
+    if type(shape) is Shape and type(points) is np.ndarray and threads == 0:
+        one = _core.one_contains(shape._core, pose, points)
+        if one is not None:
+            return one
     placed = _Placed(pose, points=points)
     places = placed.vectors["points"]
     inside = _core.contains(as_shape(shape)._core, placed.poses, places, as_count(threads, "threads"))

@@ -9,6 +9,8 @@ namespace raycontact::python {
 void bind_mesh(nanobind::module_& m);
 void bind_shape(nanobind::module_& m);
 void bind_queries(nanobind::module_& m);
+void bind_single(nanobind::module_& m);
+void bind_placed(nanobind::module_& m);
 void bind_stats(nanobind::module_& m);
 void bind_scene(nanobind::module_& m);
 void bind_recordings(nanobind::module_& m);

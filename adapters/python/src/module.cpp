@@ -29,6 +29,8 @@ NB_MODULE(_core, m) {
     raycontact::python::bind_mesh(m);
     raycontact::python::bind_shape(m);
     raycontact::python::bind_queries(m);
+    raycontact::python::bind_single(m);
+    raycontact::python::bind_placed(m);
     raycontact::python::bind_stats(m);
     raycontact::python::bind_scene(m);
     raycontact::python::bind_recordings(m);

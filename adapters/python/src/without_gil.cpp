@@ -28,6 +28,11 @@ void end() {
 }
 
 std::atomic<bool> ctrl_c = false; ///< was pressed while the main thread computes
+std::atomic<unsigned long> main_thread = 0;
+
+void find_main_thread() {
+    main_thread = nb::cast<unsigned long>(nb::module_::import_("threading").attr("main_thread")().attr("ident"));
+}
 
 #ifdef SA_SIGINFO
 
@@ -44,14 +49,13 @@ bool is_there(const struct sigaction& action) {
 
 /// Whether this is the main thread, and Ctrl-C would raise KeyboardInterrupt: a handler of the user's may go on.
 bool python_raises() {
+    if (PyThread_get_thread_ident() != main_thread) return false;
     try {
-        static const nb::handle main_thread =
-            nb::object(nb::module_::import_("threading").attr("main_thread")).release();
         static const nb::handle handler = nb::object(nb::module_::import_("signal").attr("getsignal")).release();
         static const nb::handle usual =
             nb::object(nb::module_::import_("signal").attr("default_int_handler")).release();
-        return nb::cast<unsigned long>(main_thread().attr("ident")) == PyThread_get_thread_ident()
-               && handler(SIGINT).is(usual);
+        static const nb::handle number = nb::object(nb::int_(SIGINT)).release();
+        return handler(number).is(usual);
     } catch (const nb::python_error&) {
         return false; // the interpreter is about to end
     }
@@ -91,11 +95,13 @@ bool is_ending() {
 }
 
 void watch_the_end() {
+    find_main_thread();
     nb::module_::import_("atexit").attr("register")(nb::cpp_function(&end));
     const nb::module_ os = nb::module_::import_("os");
     if (nb::hasattr(os, "register_at_fork")) { // a child has none of its parent's threads
         os.attr("register_at_fork")(nb::arg("after_in_child") = nb::cpp_function([] {
                                         computing = 0;
+                                        find_main_thread();
                                         stop_listening();
                                     }));
     }

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: Apache-2.0
+// Questions about one item as most callers give it: a shape, float64 matrices or none. What is given otherwise, or is
+// wrong, has no answer here (None): the Python half looks closer, and says what is wrong.
+#include "arrays.h"
+#include "bind.h"
+#include "single.h"
+#include "without_gil.h"
+
+#include <raycontact/query.h>
+
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/shared_ptr.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace raycontact::python {
+
+namespace {
+
+using Triple = nb::ndarray<const double, nb::shape<3>, nb::c_contig, nb::device::cpu>;
+
+std::optional<Vec3> point_of(nb::handle given) {
+    Triple point;
+    if (!nb::try_cast<Triple>(given, point, false)) return std::nullopt;
+    const double* const p = point.data();
+    constexpr double largest = 1e30;
+    for (std::size_t k = 0; k < 3; ++k)
+        if (!(std::fabs(p[k]) < largest)) return std::nullopt;
+    return Vec3{p[0], p[1], p[2]};
+}
+
+Array array_of(const Vec3& v) {
+    return python::array_of(std::vector{v.x, v.y, v.z}, {3});
+}
+
+nb::object index_of(std::uint32_t triangle) {
+    return nb::int_(triangle == Shape::no_triangle ? std::int64_t{-1} : std::int64_t{triangle});
+}
+
+std::optional<bool> one_intersects(const Shape& a, nb::handle given_a, const Shape& b, nb::handle given_b) {
+    const auto pose_a = pose_of(given_a), pose_b = pose_of(given_b);
+    if (!pose_a || !pose_b) return std::nullopt;
+    const WithoutGil without_gil;
+    return intersects(a, *pose_a, b, *pose_b);
+}
+
+nb::object one_distance(const Shape& a, nb::handle given_a, const Shape& b, nb::handle given_b, double max) {
+    const auto pose_a = pose_of(given_a), pose_b = pose_of(given_b);
+    if (!pose_a || !pose_b || !(max >= 0)) return nb::none();
+    std::optional<Distance> found;
+    {
+        const WithoutGil without_gil;
+        found = distance(a, *pose_a, b, *pose_b, max);
+    }
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    if (!found)
+        return nb::make_tuple(any_distance, array_of(Vec3{none, none, none}), array_of(Vec3{none, none, none}), -1, -1);
+    return nb::make_tuple(found->distance, array_of(found->point_a), array_of(found->point_b),
+                          index_of(found->triangle_a), index_of(found->triangle_b));
+}
+
+nb::object one_closest_point(const Shape& shape, nb::handle given_pose, nb::handle given_point, double max) {
+    const auto pose = pose_of(given_pose);
+    const auto point = point_of(given_point);
+    if (!pose || !point || !(max >= 0)) return nb::none();
+    std::optional<ClosestPoint> found;
+    {
+        const WithoutGil without_gil;
+        found = closest_point(shape, *pose, *point, max);
+    }
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    if (!found) return nb::make_tuple(any_distance, array_of(Vec3{none, none, none}), -1);
+    return nb::make_tuple(found->distance, array_of(found->point), index_of(found->triangle));
+}
+
+std::optional<bool> one_contains(const Shape& shape, nb::handle given_pose, nb::handle given_point) {
+    const auto pose = pose_of(given_pose);
+    const auto point = point_of(given_point);
+    if (!pose || !point) return std::nullopt;
+    const WithoutGil without_gil;
+    return contains(shape, *pose, *point);
+}
+
+} // namespace
+
+std::optional<Pose> pose_of(nb::handle given) {
+    using Matrix = nb::ndarray<const double, nb::shape<4, 4>, nb::c_contig, nb::device::cpu>;
+    if (given.is_none()) return Pose{};
+    Matrix matrix;
+    if (!nb::try_cast<Matrix>(given, matrix, false)) return std::nullopt;
+    const double* const m = matrix.data();
+    if (m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1) return std::nullopt;
+    const Pose pose{{m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]}, {m[3], m[7], m[11]}};
+    const auto& r = pose.rotation;
+    double shear = 0;
+    for (std::size_t i = 0; i < 3; ++i)
+        for (std::size_t j = i; j < 3; ++j) {
+            const double product = r[i] * r[j] + r[3 + i] * r[3 + j] + r[6 + i] * r[6 + j] - (i == j ? 1 : 0);
+            shear = std::isfinite(product) ? std::max(shear, std::fabs(product)) : 1;
+        }
+    const double volume =
+        r[0] * (r[4] * r[8] - r[5] * r[7]) - r[1] * (r[3] * r[8] - r[5] * r[6]) + r[2] * (r[3] * r[7] - r[4] * r[6]);
+    const Vec3& t = pose.translation;
+    constexpr double largest = 1e30; // check_placed() names larger ones
+    const bool fits = std::fabs(t.x) < largest && std::fabs(t.y) < largest && std::fabs(t.z) < largest;
+    if (!(shear <= 1e-4) || !(volume > 0) || !fits) return std::nullopt;
+    return pose;
+}
+
+void bind_single(nb::module_& m) {
+    const auto pose = [](const char* name) { return nb::arg(name).none(); };
+    m.def("one_intersects", &one_intersects, "a"_a, pose("pose_a"), "b"_a, pose("pose_b"));
+    m.def("one_distance", &one_distance, "a"_a, pose("pose_a"), "b"_a, pose("pose_b"), "max"_a);
+    m.def("one_closest_point", &one_closest_point, "shape"_a, pose("pose"), "point"_a, "max"_a);
+    m.def("one_contains", &one_contains, "shape"_a, pose("pose"), "point"_a);
+}
+
+} // namespace raycontact::python
