@@ -23,7 +23,7 @@ void EdgePieces::list(const PairMeshes& pair, std::span<const Crossing> crossing
         const auto ends = ends_of(pair.shape(side), edge);
         const auto [low, high] = std::minmax(ends[0], ends[1]);
         crossed_.push_back({vertex_of_side(side, low), vertex_of_side(side, high)});
-        if (pair.shape(1 - side).header.closed == 0) continue; // an open mesh has no inside
+        if (!pair.holds_edges(1 - side)) continue;
         // The piece before crossing k, if it is inside.
         for (std::size_t k = begin; k <= end; ++k) {
             EdgePiece piece{side, edge, {k > begin ? by_edge_[k - 1] : NONE, k < end ? by_edge_[k] : NONE}, {}};

@@ -120,7 +120,7 @@ void PairEdges::list_ways(const PairMeshes& pair) {
         const Region& region = regions[region_of(piece)];
         if (region.is_pierced() || (effort_ != Effort::edges_alone && region.speaks)) continue;
         if (!speaks(pair, piece)) continue;
-        if (effort_ == Effort::edges_alone)
+        if (effort_ == Effort::edges_alone || !region.leads)
             list_way(pair, piece);
         else
             list_way_of_region(pair, piece);
@@ -207,7 +207,7 @@ const TouchingVertex* PairEdges::touching(const PairMeshes& pair, const EdgePiec
 bool PairEdges::leads_out(const PairMeshes& pair, const EdgePiece& piece, const WayOut& way) {
     const Region& region = regions_.all()[region_of(piece)];
     return way.depth > noise * pair.perturbation()
-           && (region.is_pierced() || dot(out_of_b(piece, way.normal), unit(region.area)) > sideways);
+           && (!region.leads || region.is_pierced() || dot(out_of_b(piece, way.normal), unit(region.area)) > sideways);
 }
 
 // Whether a piece comes out with the vertex in contact at its end. Of an edge that lies on a face the other end, too,

@@ -44,6 +44,11 @@ public:
     /// Of the smaller body's box, its diagonal.
     double size() const { return a_in_b_.size; }
 
+    /// Neither mesh has an inside: what is behind a surface counts as in it.
+    bool of_sheets() const { return !closed(0) && !closed(1); }
+    /// Whether an edge can be in a body: in a closed one; in an open one if the other is open, too.
+    bool holds_edges(std::size_t side) const { return closed(side) || of_sheets(); }
+
     Vec3 vertex(std::size_t side, std::uint32_t v) const {
         const ShapeData& own = *shapes_[side];
         if (side == 0) return a_in_b_.vertex(v);
@@ -74,6 +79,8 @@ public:
     }
 
 private:
+    bool closed(std::size_t side) const { return shapes_[side]->header.closed != 0; }
+
     SourceMesh a_in_b_;
     std::array<const ShapeData*, 2> shapes_;
 };

@@ -16,7 +16,7 @@ void Regions::find(const PairMeshes& pair, const Loops& loops, const EdgePieces&
         const std::uint32_t root = sets_.of(i); // the lowest, so seen already
         if (root == i) {
             region_of_[i] = static_cast<std::uint32_t>(regions_.size());
-            regions_.emplace_back();
+            regions_.emplace_back().leads = !pair.of_sheets();
         } else {
             region_of_[i] = region_of_[root];
         }

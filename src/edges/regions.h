@@ -27,9 +27,10 @@ struct Region {
     double deepest = 0;  ///< contact so far, metres
     Vec3 normal;         ///< of that contact, the way in which a leaves b
     bool speaks = false; ///< it has a contact
+    bool leads = true;   ///< the area says which way is out: of two sheets, which enclose nothing, it does not
 
     /// Its loops nearly cancel: a body is pierced through.
-    bool is_pierced() const { return !(length(area) > 0.25 * area_sum); }
+    bool is_pierced() const { return leads && !(length(area) > 0.25 * area_sum); }
     void tell(double depth, const Vec3& way) {
         speaks = true;
         if (!(depth > deepest)) return;

@@ -116,12 +116,6 @@ DEVICE uint near_lanes(Search* search, READS(ClusterBlock) block) {
     return pack_sixteen(within);
 }
 
-// What is searched, as BlockSearch::Sources: 0 vertices that cast, 1 edges, where at least one of the bodies has an
-// inside, 2 vertices as points.
-DEVICE bool is_asked(uint edges, READS(DirectedPair) pair, READS(ShapeHeader) shapes) {
-    return pair->source != NONE && (edges != 1u || (shapes[pair->source].closed | shapes[pair->target].closed) != 0u);
-}
-
 // Without horizons the horizon is negative. least: null for 0.
 DEVICE Search search_of(uint p, uint edges, READS(DirectedPair) pairs, READS(float) horizons, READS(float) least,
                         READS(ShapeHeader) shapes, READS(ulong) memory) {
@@ -241,13 +235,13 @@ DEVICE void write_reached(Search* search, READS(ulong) mask, const FoundBlocks* 
 // Counts the vertex blocks of each pair that may reach into the bounds. With horizons (metres, by pair) it leaves out
 // blocks that cannot be in contact before they have moved that far. safe_distances, with horizons: for a pair without
 // blocks, a lower bound of how far its vertices can move before one could be in contact; may be negative. least,
-// with horizons: of edges those that hide less are left out. edges: see is_asked(); edges and points are in contact
-// where they meet the surface.
+// with horizons: of edges those that hide less are left out. edges: what is searched, as BlockSearch::Sources: 0
+// vertices that cast, 1 edges, 2 vertices as points; edges and points are in contact where they meet the surface.
 KERNEL void count_clusters(COUNT(count), uint edges, READS(DirectedPair) pairs, READS(float) horizons,
                            READS(float) least, READS(ShapeHeader) shapes, READS(ulong) memory, WRITES(uint) counts,
                            WRITES(float) safe_distances, WRITES(ulong) block_masks) {
     FOR_EACH(p, count) {
-        if (!is_asked(edges, pairs + p, shapes)) {
+        if (pairs[p].source == NONE) {
             counts[p] = 0u;
             continue;
         }
@@ -262,7 +256,7 @@ KERNEL void write_clusters(COUNT(count), uint edges, READS(DirectedPair) pairs, 
                            READS(float) least, READS(ShapeHeader) shapes, READS(ulong) memory, READS(ulong) block_masks,
                            READS(uint) firsts, WRITES(PairBlock) blocks, uint stride, WRITES(uint) ray_counts) {
     FOR_EACH(p, count) {
-        if (!is_asked(edges, pairs + p, shapes)) continue;
+        if (pairs[p].source == NONE) continue;
         Search search = search_of(p, edges, pairs, horizons, least, shapes, memory);
         // NOLINTNEXTLINE(modernize-use-nullptr): this text is C as well
         const FoundBlocks found = {blocks + firsts[p], ray_counts + firsts[p], stride, (GLOBAL ulong*)0};

@@ -18,11 +18,6 @@ using kernels::NearEdge;
 /// diagonal; one that ends at such a vertex, more than the second (docs/internals/edges.md).
 inline constexpr double least_hidden = 0.01, least_hidden_beside = 0.1;
 
-/// Whether edges can be in contact at all: of two open meshes vertices alone decide.
-inline bool asks_edges(const PlacedBody& a, const PlacedBody& b) {
-    return a.shape->has_inside() || b.shape->has_inside();
-}
-
 /// Metres: an edge of a pair in contact that hides less need not be found. A little less than what the rule leaves out.
 inline double hidden_length(const PlacedBody& a, const PlacedBody& b) {
     return 0.9999 * least_hidden * smaller_size(a, b);

@@ -238,7 +238,7 @@ void Pipeline::list_asked(const Update& update) {
         const auto [first, second] = update.pairs[i];
         const PlacedBody &a = update.bodies[first], &b = update.bodies[second];
         AskedPair asked{i, false, {}};
-        if (edges && !apart && asks_edges(a, b) && !(in_contact && !hides_more(a, b, least_hidden))) {
+        if (edges && !apart && !(in_contact && !hides_more(a, b, least_hidden))) {
             asked.near = casts_edges_ ? std::array{near_.of(2 * i), near_.of(2 * i + 1)} : certified_.near(i);
             if (!casts_edges_) asked.apart = certified_.apart(i);
             // Without edges a pair has nothing more to tell, but that one body is inside the other.

@@ -297,11 +297,10 @@ void CertifiedRays::find_edges(const Update& update, const ByPair<kernels::Local
             const KeptNear before = state.edges;
             slack.apart = false;
             slack.edges = never;
-            slack.all = !in_contact || !asks_edges(a, b);
+            slack.all = !in_contact;
             edges_.release(state);
-            if (!asks_edges(a, b) || (in_contact && !hides_more(a, b, least_hidden))) continue;
-            NearLists::Search& search =
-                searches_.emplace_back(search_of(due, before, due.moves, double(slack.margin)));
+            if (in_contact && !hides_more(a, b, least_hidden)) continue;
+            NearLists::Search& search = searches_.emplace_back(search_of(due, before, due.moves, double(slack.margin)));
             search.least = in_contact ? static_cast<float>(hidden_length(a, b)) : 0;
         }
     edges_.find(update, searches_, table_, batch);

@@ -207,18 +207,17 @@ TEST_F(Clash, ShallowOverlapsHaveTheirDepth) {
     EXPECT_NEAR(smaller["normal"][0].get<double>(), 1, 1e-6);
 }
 
-TEST_F(Clash, OpenPartsThatCrossHaveNoDepthAndAreNotIgnored) {
+TEST_F(Clash, OpenPartsThatCrossAreAsDeepAsOneIsBehindTheOther) {
     folder_.write("lying.obj", "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nf 1 2 3 4\n");
-    folder_.write("upright.obj", "v -1 0.1 -1\nv 1 0.1 -1\nv 1 0.1 1\nv -1 0.1 1\nf 1 2 3 4\n");
+    folder_.write("upright.obj", "v -.5 0.1 -.3\nv .5 0.1 -.3\nv .5 0.1 1\nv -.5 0.1 1\nf 1 2 3 4\n");
     const ProgramResult result = run({"lying.obj", "upright.obj", "--ignore-touching", "0", "--check", "--json"});
     EXPECT_EQ(result.status, 3);
     const auto found = json_lines(result.out);
     ASSERT_EQ(found.size(), 1u);
-    EXPECT_TRUE(found[0]["depth"].is_null());
-    EXPECT_EQ(found[0]["contacts"], 0);
+    EXPECT_NEAR(found[0]["depth"].get<double>(), 0.3, 1e-5);
+    EXPECT_EQ(found[0]["contacts"], 2);
     EXPECT_EQ(found[0]["kind"], "overlapping");
     EXPECT_EQ(found[0]["open"], json({"a", "b"}));
-    EXPECT_NE(result.err.find("1 without a depth"), std::string::npos) << result.err;
     EXPECT_NE(result.err.find("open, so that nothing is inside: lying.obj, upright.obj"), std::string::npos);
 }
 

@@ -280,6 +280,16 @@ TEST(agreement, edges_of_open_meshes) {
     EXPECT_GE(counts.edges.agreed, 1000u);
 }
 
+// Of two open meshes what is behind either counts as in it.
+TEST(agreement, edges_of_two_open_meshes) {
+    const auto subjects = pointers(open_subjects());
+    Random random(20130705);
+    Counts counts;
+    run([&] { return random_placement(subjects, random); }, 2000, counts, Features::edges);
+    report_edges(counts);
+    EXPECT_GE(counts.edges.agreed, 2000u);
+}
+
 // Needles through one point: there a ray meets more leaves and triangles than a group of rays has room for, and of two
 // thousand needles more leaves are near it than are listed.
 Mesh needles_mesh(std::uint32_t count, Random& random) {

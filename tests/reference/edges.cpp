@@ -149,7 +149,8 @@ struct Way {
 
 class PairOfBodies {
 public:
-    PairOfBodies(Body& a, Body& b, double perturbation) : bodies_{&a, &b}, perturbation_(perturbation) {
+    PairOfBodies(Body& a, Body& b, double perturbation)
+        : bodies_{&a, &b}, perturbation_(perturbation), sheets_(!a.solid.closed && !b.solid.closed) {
         for (const std::size_t side : {0u, 1u})
             for (const Edge& edge : bodies_[side]->edges) pierce(side, edge);
     }
@@ -273,7 +274,7 @@ private:
         for (std::size_t i = 0; i < crossings_.size(); ++i) {
             const Crossing& c = crossings_[i];
             const Body& own = *bodies_[c.side];
-            if (!bodies_[1 - c.side]->solid.closed) continue;
+            if (!sheets_ && !bodies_[1 - c.side]->solid.closed) continue;
             const bool first = i == 0 || crossings_[i - 1].edge != c.edge;
             const bool last = i + 1 == crossings_.size() || crossings_[i + 1].edge != c.edge;
             if (c.leaves && first)
@@ -342,8 +343,10 @@ private:
         }
     }
 
+    bool pierced(const Region& region) const { return !sheets_ && region.pierced(); }
+
     bool leads_out(const Region& region, double depth, const Vec3& way) const {
-        return depth > 0.1 * perturbation_ && (region.pierced() || dot(way, unit(region.area)) > 0.1);
+        return depth > 0.1 * perturbation_ && (sheets_ || region.pierced() || dot(way, unit(region.area)) > 0.1);
     }
 
     // From a little inside the piece.
@@ -439,12 +442,13 @@ private:
         };
         for (const Piece& piece : pieces_) {
             const Region& region = regions_[region_[piece.crossing]];
-            if (region.pierced() || (effort > 0 && region.speaks) || !counts(piece)) continue;
-            if (effort == 0 && goes_with_vertex(piece, add)) continue;
-            const Way way = effort > 0 ? Way{} : piece.through ? way_over_ridge(piece) : way_past_face(piece);
+            if (pierced(region) || (effort > 0 && region.speaks) || !counts(piece)) continue;
+            const bool own = effort == 0 || sheets_; // its way, not that of the region
+            if (own && goes_with_vertex(piece, add)) continue;
+            const Way way = !own ? Way{} : piece.through ? way_over_ridge(piece) : way_past_face(piece);
             if (way.face != none && region.hides(way.depth, piece.side == 0 ? way.normal : -way.normal)) continue;
             const auto n = bodies_[piece.side]->normals_at(*piece.edge);
-            const Vec3 direction = effort == 0 ? -unit(n[0] + n[1]) : (piece.side == 0 ? 1 : -1) * unit(region.area);
+            const Vec3 direction = own ? -unit(n[0] + n[1]) : (piece.side == 0 ? 1 : -1) * unit(region.area);
             const Way middle = way_along(piece, piece.middle(), direction);
             const bool passes = piece.through && way.in_arc && way.distance <= 2 * middle.distance
                                 && exit_along(piece, way.point, way.normal).distance > 0.75 * way.distance;
@@ -467,7 +471,7 @@ private:
                 add(piece, middle, nearest_to(piece, middle));
         }
         for (const auto& entry : regions_)
-            if (entry.second.pierced() && !entry.second.speaks) ask_pierced(entry.first, counts, add);
+            if (pierced(entry.second) && !entry.second.speaks) ask_pierced(entry.first, counts, add);
         for (const Candidate& c : candidates) c.region->tell(c.found.depth, c.found.way);
         const auto out_of_b = [](const InnerVertex& v) { return v.side == 0 ? v.way : -v.way; };
         if (effort == 0) {
@@ -511,6 +515,7 @@ private:
 
     std::array<Body*, 2> bodies_;
     double perturbation_;
+    bool sheets_;                     ///< both: S says nothing
     std::vector<Crossing> crossings_; ///< of an edge in a row, along it
     std::vector<Link> links_;
     std::vector<Loop> loops_;
@@ -547,7 +552,6 @@ std::optional<ReferenceContact> inside(const Body& source, const Body& target, S
 
 std::vector<ReferenceContact> find_edges(const Solid& a, const Pose& pose_a, const Solid& b, const Pose& pose_b,
                                          Direction direction) {
-    if (!a.closed && !b.closed) return {};
     Pose a_in_b;
     a_in_b.translation = rotate_back(pose_b, (pose_a.translation - pose_b.translation)
                                                  + (rotate(pose_a, a.centre) - rotate(pose_b, b.centre)));

@@ -56,11 +56,8 @@ public:
     }
     /// After find(): whether edges alone tell of the pair.
     bool without_contact(std::uint32_t i) const {
-        const auto [a, b] = pairs[i];
         const auto at = static_cast<std::size_t>(std::ranges::find(found_, pairs[i]) - found_.begin());
-        const bool in_contact =
-            at < found_.size() && pipeline_.contacts().first(2 * at) != pipeline_.contacts().first(2 * at + 2);
-        return !in_contact && asks_edges(bodies[a], bodies[b]);
+        return at >= found_.size() || pipeline_.contacts().first(2 * at) == pipeline_.contacts().first(2 * at + 2);
     }
     /// By pair: how far its bodies can move, either against the other, before an edge crosses that is not found now.
     std::vector<double> clear(double ahead, RayBatch& batch, NearRays& rays) {
