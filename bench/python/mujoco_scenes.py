@@ -93,12 +93,12 @@ def scenes(factory):
     rng = np.random.default_rng(66)
     small = rc.Shape(rc.Mesh(*torus(0.05, 0.012, 24, 12)))
     items = "".join(
-        f'<body pos="{x:.3f} {y:.3f} {0.1 + 0.05 * i:.3f}" euler="{a:.0f} {b:.0f} 0"><freejoint/>'
+        f'<body pos="{x:.3f} {y:.3f} {0.15 + 0.14 * i:.3f}" euler="{a:.0f} {b:.0f} 0"><freejoint/>'
         f"{{geom:{('small', 'mug')[i % 2]}}}</body>"
         for i, (x, y, a, b) in enumerate(rng.uniform([-0.08, -0.08, 0, 0], [0.08, 0.08, 360, 360], (50, 4)))
     )
     walls = "".join(
-        f'<geom type="box" size="{sx} {sy} 1.5" pos="{x} {y} 1.5"/>'
+        f'<geom type="box" size="{sx} {sy} 4" pos="{x} {y} 4"/>'
         for x, y, sx, sy in ((0.2, 0, 0.02, 0.2), (-0.2, 0, 0.02, 0.2), (0, 0.2, 0.2, 0.02), (0, -0.2, 0.2, 0.02))
     )
     yield Scene(

@@ -135,9 +135,12 @@ void InnerSurfaces::visit(const PairMeshes& pair, const EdgePieces& pieces, std:
         if (own.seen.insert(next).second) own.open.push_back(next);
         if (face < next) joints_.push_back({side, {face, next}, !is_sharp(shape, edge), is_convex(shape, edge)});
     }
-    const auto cut = std::ranges::equal_range(own.cut, face, {}, &std::pair<std::uint32_t, OutlineSegment>::first);
-    for (const auto& [of, segment] : cut) segments_.push_back(segment);
-    whole = whole && cut.empty();
+    const auto of_face = &std::pair<std::uint32_t, OutlineSegment>::first;
+    for (auto at = std::ranges::lower_bound(own.cut, face, {}, of_face); at != own.cut.end() && at->first == face;
+         ++at) {
+        segments_.push_back(at->second);
+        whole = false;
+    }
     inner.segment_count = static_cast<std::uint32_t>(segments_.size()) - inner.first_segment;
     if (inner.segment_count == 0) return;
     const Vec3 origin = pair.unmoved_vertex(side, corners[0]);

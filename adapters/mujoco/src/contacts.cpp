@@ -11,8 +11,12 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <list>
+#include <memory>
 #include <optional>
+#include <unordered_map>
+#include <utility>
 #include <vector>
 
 namespace raycontact::mujoco {
@@ -24,7 +28,7 @@ constexpr double largest_margin = 0.1;
 // Points nearer to each other than this part of the smaller geom's size are at one place.
 constexpr double one_place = 0.01;
 // Scenes that a thread keeps: each has what its pair was asked last, which saves work and changes no answer.
-constexpr std::size_t most_scenes = 256;
+constexpr std::size_t most_scenes = 1024; // of some 50 KB each
 // Of a capsule's axis, between whose points the nearest places are sought.
 constexpr int samples = 16, refinements = 24;
 
@@ -57,11 +61,23 @@ std::size_t choose(std::vector<ManifoldPoint>& found, std::span<Point> points) {
     return chosen.size();
 }
 
-/// Two bodies that wait for their next poses.
-struct PairScene {
+/// Geoms' numbers only help to find the scene that was asked about the same geoms.
+struct PairKey {
     std::shared_ptr<const Shape> a, b;
     int number_a, number_b;
     bool speculative;
+    bool operator==(const PairKey&) const = default;
+};
+struct PairKeyHash {
+    std::size_t operator()(const PairKey& key) const {
+        std::size_t h = std::hash<const void*>()(key.a.get()) ^ 3 * std::hash<const void*>()(key.b.get());
+        return h * 31 + static_cast<std::size_t>(key.number_a) * 65537 + static_cast<std::size_t>(key.number_b);
+    }
+};
+
+/// Two bodies that wait for their next poses.
+struct PairScene {
+    PairKey key;
     Scene scene;
     Pair pair;
 
@@ -73,25 +89,23 @@ struct PairScene {
         settings.execution.devices = "cpu";
         return settings;
     }
-    PairScene(const std::shared_ptr<const Shape>& shape_a, const std::shared_ptr<const Shape>& shape_b, int a_number,
-              int b_number, bool ahead)
-        : a(shape_a), b(shape_b), number_a(a_number), number_b(b_number), speculative(ahead),
-          scene(settings(ahead)), pair{scene.add(a), scene.add(b)} {}
+    explicit PairScene(const PairKey& of)
+        : key(of), scene(settings(of.speculative)), pair{scene.add(of.a), scene.add(of.b)} {}
 };
 
-/// That of a pair, of the thread's: geoms' numbers only help to find the one that was asked for the same geoms.
-PairScene& scene_of(const Geom& a, const std::shared_ptr<const Shape>& shape_a, const Geom& b,
-                    const std::shared_ptr<const Shape>& shape_b, bool speculative) {
+/// The thread's own for a pair; those used last are kept.
+PairScene& scene_of(const PairKey& key) {
     thread_local std::list<PairScene> scenes;
-    const auto known = std::ranges::find_if(scenes, [&](const PairScene& s) {
-        return s.a == shape_a && s.b == shape_b && s.number_a == a.number && s.number_b == b.number
-               && s.speculative == speculative;
-    });
-    if (known != scenes.end()) {
-        scenes.splice(scenes.begin(), scenes, known);
-    } else {
-        scenes.emplace_front(shape_a, shape_b, a.number, b.number, speculative);
-        if (scenes.size() > most_scenes) scenes.pop_back();
+    thread_local std::unordered_map<PairKey, std::list<PairScene>::iterator, PairKeyHash> places;
+    if (const auto known = places.find(key); known != places.end()) {
+        scenes.splice(scenes.begin(), scenes, known->second);
+        return scenes.front();
+    }
+    scenes.emplace_front(key);
+    places.emplace(key, scenes.begin());
+    if (scenes.size() > most_scenes) {
+        places.erase(scenes.back().key);
+        scenes.pop_back();
     }
     return scenes.front();
 }
@@ -101,7 +115,7 @@ std::size_t of_meshes(const Geom& a, const Geom& b, double margin, std::span<Poi
     const double size = std::min(diagonal(*shape_a), diagonal(*shape_b));
     const double asked = margin;
     margin = std::min(margin, largest_margin * size);
-    PairScene& own = scene_of(a, shape_a, b, shape_b, margin > 0);
+    PairScene& own = scene_of({shape_a, shape_b, a.number, b.number, margin > 0});
     const auto& [first, second] = own.pair;
     own.scene.set_pose(first, pose_of(a));
     own.scene.set_pose(second, pose_of(b));

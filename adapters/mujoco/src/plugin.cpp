@@ -139,7 +139,7 @@ bool is_mesh(mjtGeom type) {
 extern "C" {
 
 /// Puts our functions in place of MuJoCo's. Doing so twice is doing so once.
-__attribute__((visibility("default"))) void raycontact_mujoco_install() {
+RAYCONTACT_API void raycontact_mujoco_install() {
     if (installed) return;
     installed = true;
     for (const mjtGeom one : partners)
@@ -151,7 +151,7 @@ __attribute__((visibility("default"))) void raycontact_mujoco_install() {
 }
 
 /// Puts back what was there, and forgets all shapes.
-__attribute__((visibility("default"))) void raycontact_mujoco_uninstall() {
+RAYCONTACT_API void raycontact_mujoco_uninstall() {
     if (!installed) return;
     installed = false;
     for (const mjtGeom one : partners)
@@ -162,7 +162,7 @@ __attribute__((visibility("default"))) void raycontact_mujoco_uninstall() {
 }
 
 /// Three numbers: calls, contacts told, contacts left out.
-__attribute__((visibility("default"))) void raycontact_mujoco_counts(unsigned long long* three) {
+RAYCONTACT_API void raycontact_mujoco_counts(unsigned long long* three) {
     const auto counts = raycontact::mujoco::counts();
     three[0] = counts.calls;
     three[1] = counts.contacts;

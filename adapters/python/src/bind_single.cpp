@@ -47,9 +47,10 @@ std::optional<bool> one_intersects(const Shape& a, nb::handle given_a, const Sha
     return intersects(a, *pose_a, b, *pose_b);
 }
 
-nb::object one_distance(const Shape& a, nb::handle given_a, const Shape& b, nb::handle given_b, double max) {
+std::optional<nb::tuple> one_distance(const Shape& a, nb::handle given_a, const Shape& b, nb::handle given_b,
+                                      double max) {
     const auto pose_a = pose_of(given_a), pose_b = pose_of(given_b);
-    if (!pose_a || !pose_b || !(max >= 0)) return nb::none();
+    if (!pose_a || !pose_b || !(max >= 0)) return std::nullopt;
     std::optional<Distance> found;
     {
         const WithoutGil without_gil;
@@ -62,10 +63,11 @@ nb::object one_distance(const Shape& a, nb::handle given_a, const Shape& b, nb::
                           index_of(found->triangle_a), index_of(found->triangle_b));
 }
 
-nb::object one_closest_point(const Shape& shape, nb::handle given_pose, nb::handle given_point, double max) {
+std::optional<nb::tuple> one_closest_point(const Shape& shape, nb::handle given_pose, nb::handle given_point,
+                                           double max) {
     const auto pose = pose_of(given_pose);
     const auto point = point_of(given_point);
-    if (!pose || !point || !(max >= 0)) return nb::none();
+    if (!pose || !point || !(max >= 0)) return std::nullopt;
     std::optional<ClosestPoint> found;
     {
         const WithoutGil without_gil;
