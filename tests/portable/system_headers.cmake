@@ -9,7 +9,7 @@ set(compiler_files include/raycontact/library_mode.h include/raycontact/export.h
 set(dialects src/device/opencl/dialect.h src/device/cuda/dialect.h) # compiled on the device
 
 set(known "[a-z0-9_]+" # the C++ standard's have no dot
-    "(raycontact|recording|nlohmann|nanobind|oneapi/tbb|CL|LinearMath|BulletCollision|BulletDynamics)/[A-Za-z0-9_./]+"
+    "(raycontact|recording|nlohmann|nanobind|oneapi/tbb|CL|LinearMath|BulletCollision|BulletDynamics|mujoco)/[A-Za-z0-9_./]+"
     "(Python|expat|unzip|xxhash|zlib)\\.h")
 list(JOIN known "|" known)
 set(posix "newlocale|uselocale|strto[a-z]+_l|ssize_t|off_t|mkstemp|getpid|usleep|localtime_r|gmtime_r|strerror_r|setenv|fileno|isatty|popen")
