@@ -68,6 +68,7 @@ void join(std::vector<Contact>& contacts, std::size_t first) {
         }
         Contact& c = contacts[kept - 1];
         const Vec3 sum = force(c) + force(contacts[i]);
+        if (!(length(sum) > 0)) continue; // they cancel out
         const double own = length(force(c)), other = length(force(contacts[i])),
                      area = double(c.weight) + double(contacts[i].weight);
         const auto middle = [](const Contact& of) { return 0.5 * (of.point_a + of.point_b); };

@@ -847,3 +847,30 @@ def test_fcl_agrees_on_names_of_many():
         mine = ours.in_collision_internal(return_data=True)[1]
         their = theirs.in_collision_internal(return_data=True)[1]
         assert {frozenset(c.names) for c in mine} == {frozenset(c.names) for c in their}
+
+
+def test_allowed_pairs_are_not_asked():
+    manager = CollisionManager()
+    for i in range(4):
+        manager.add_object(f"link{i}", box(), rc.pose([0.9 * i, 0, 0]))
+    pairs = {(f"link{i}", f"link{i + 1}") for i in range(3)}
+    assert manager.in_collision_internal(return_names=True) == (True, pairs)
+    manager.allow_collision("link0", "link1")
+    manager.allow_collision("link3", "link2")
+    assert manager.in_collision_internal(return_names=True) == (True, {("link1", "link2")})
+    manager.set_transform("link1", rc.pose([0.9, 5, 0]))
+    assert not manager.in_collision_internal()
+    manager.set_transform("link1", [[1, 0, 0, 0.9], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])  # ints, as a list
+    assert manager.in_collision_internal()
+    manager.allow_collision("link1", "link2")
+    assert not manager.in_collision_internal()
+    manager.allow_collision("link2", "link1", allowed=False)
+    assert manager.in_collision_internal()
+    manager.remove_object("link1")
+    manager.add_object("link1", box(), rc.pose([0.9, 0, 0]))  # a new one is asked
+    assert manager.in_collision_internal(return_names=True) == (True, {("link0", "link1"), ("link1", "link2")})
+    with pytest.raises(rc.InputError, match="link9"):
+        manager.allow_collision("link0", "link9")
+    with pytest.raises(rc.InputError, match="link1"):
+        manager.set_transform("link1", np.diag([1.0, 1, 3, 1]))
+    assert manager.in_collision_internal()

@@ -235,3 +235,48 @@ def test_poses_that_are_no_poses_are_named_as_they_were_given(torus):
 def test_rotations_of_scipy_are_taken():
     rotation = pytest.importorskip("scipy.spatial.transform").Rotation.from_euler("z", 90, degrees=True)
     assert np.allclose(rc.pose([1, 2, 3], rotation), rc.pose_from_quaternion([1, 2, 3], [1, 0, 0, 1]))
+
+
+def test_patches_and_weighted_contacts_say_how_bodies_press(torus):
+    floor = rc.Shape(rc.Mesh(*meshes.box((6, 6, 2)), name="floor"))
+    under, over = rc.pose([0, 0, -1]), rc.pose([0.1, 0.2, 0.35 - 0.05])
+    patches = rc.contact_patches(floor, [torus, torus], under, np.stack([over, rc.pose([0, 0, 5])]))
+    assert set(patches.pair) == {0}
+    volume = patches.volume.sum()
+    assert volume > 0
+    push = (patches.volume[:, None] * patches.normal).sum(axis=0)
+    assert push == pytest.approx([0, 0, volume], abs=1e-9)
+    assert (patches.centre * patches.volume[:, None]).sum(axis=0)[:2] / volume == pytest.approx([0.1, 0.2], abs=1e-6)
+    assert patches.depth == pytest.approx(patches.volume / patches.area)
+    contacts = rc.collide(floor, torus, under, over, direction="weighted")
+    assert set(contacts.kind) == {rc.FeatureKind.FACES}
+    assert (contacts.depth * contacts.weight).sum() == pytest.approx(volume, rel=1e-5)
+    assert len(set(contacts.key)) == len(contacts)
+    sheet = rc.Shape(rc.Mesh([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]))
+    with pytest.raises(rc.InputError, match="no inside"):
+        rc.contact_patches(sheet, torus)
+
+
+# One float64 matrix goes straight to C++; whatever else says the same has the same answer.
+def test_plain_arguments_and_others_agree(torus, bracket):
+    rng = np.random.default_rng(66)
+    for _ in range(20):
+        pose, other = helpers.random_poses(2, 1.5)
+        point = rng.uniform(-2, 2, 3)
+        assert rc.intersects(torus, bracket, pose, other) == rc.intersects(
+            torus, bracket, pose.tolist(), other.tolist()
+        )
+        one, many = rc.distance(torus, bracket, pose, other), rc.distance(torus, bracket, pose.tolist(), other)
+        assert one.distance == many.distance and one.triangle_a == many.triangle_a
+        assert one.point_a.tolist() == many.point_a.tolist()
+        near, listed = rc.closest_point(torus, point, pose), rc.closest_point(torus, point.tolist(), pose)
+        assert near.distance == listed.distance and near.point.tolist() == listed.point.tolist()
+        assert rc.contains(torus, point, pose) == rc.contains(torus, point.tolist(), pose)
+        assert type(rc.contains(torus, point, pose)) is bool and type(rc.intersects(torus, torus, pose)) is bool
+    far = rc.distance(torus, bracket, None, rc.pose([90, 0, 0]), max=1.0)
+    assert far.distance == np.inf and np.isnan(far.point_a).all() and far.triangle_a == -1
+    assert rc.closest_point(torus, np.array([90.0, 0, 0]), max=1.0).triangle == -1
+    for bad, says in ((np.diag([1.0, 1, 2, 1]), "not rigid"), (np.diag([1.0, 1, -1, 1]), "not rigid"),
+                      (np.full((4, 4), np.nan), "finite"), (np.eye(4).T + np.eye(4)[::-1], "last row")):  # fmt: skip
+        with pytest.raises(rc.InputError, match=says):
+            rc.intersects(torus, torus, bad)
