@@ -37,7 +37,9 @@ struct SourceMesh {
 /// configuration. Every vertex is moved inward by a perturbation, those of a and b shaken in opposite ways.
 class PairMeshes {
 public:
-    PairMeshes(const PlacedBody& a, const PlacedBody& b) : a_in_b_(a, b), shapes_{&a_in_b_.source, &a_in_b_.target} {}
+    /// of_file: unmoved vertices are those of the file, as queries see them; else those of steps, rounded to float32.
+    PairMeshes(const PlacedBody& a, const PlacedBody& b, bool of_file = false)
+        : a_in_b_(a, b), shapes_{&a_in_b_.source, &a_in_b_.target}, of_file_(of_file) {}
 
     const ShapeData& shape(std::size_t side) const { return *shapes_[side]; }
     double perturbation() const { return a_in_b_.perturbation; }
@@ -54,10 +56,10 @@ public:
         if (side == 0) return a_in_b_.vertex(v);
         return own.point(v) - perturbation() * (own.perturbations[v] + 4.0 * own.vertex_normals[v]);
     }
-    /// Where the file has it.
+    /// Without the perturbation.
     Vec3 unmoved_vertex(std::size_t side, std::uint32_t v) const {
         const ShapeData& own = *shapes_[side];
-        const Vec3 p = own.file_vertex(v) - own.centre;
+        const Vec3 p = (of_file_ ? own.file_vertex(v) : own.mesh.vertices[v]) - own.centre;
         return side == 0 ? a_in_b_.placed(p) : p;
     }
     /// The origin of a body's centred frame.
@@ -83,6 +85,7 @@ private:
 
     SourceMesh a_in_b_;
     std::array<const ShapeData*, 2> shapes_;
+    bool of_file_;
 };
 
 /// A contact that was found on the host, in the target's centred frame. Of edges the source is a.

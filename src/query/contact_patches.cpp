@@ -34,7 +34,7 @@ std::vector<ContactPatch> contact_patches(const Shape& a, const Pose& pose_a, co
     check_inside(b, "the second mesh");
     OverlapPatches overlap;
     const PlacedBody body_b = body_of(b, pose_b);
-    if (!overlap.find(body_of(a, pose_a), body_b)) return {};
+    if (!overlap.find(body_of(a, pose_a), body_b, true)) return {};
     std::vector<ContactPatch> patches(overlap.patches().size());
     for (const FaceOverlap& face : overlap.faces()) {
         ContactPatch& patch = patches[face.patch];

@@ -182,10 +182,10 @@ void follow_all(const PairMeshes& meshes, const ShapePair& pair, Loops& loops) {
     });
 }
 
-bool OverlapPatches::find(const PlacedBody& a, const PlacedBody& b) {
+bool OverlapPatches::find(const PlacedBody& a, const PlacedBody& b, bool of_file) {
     overlaps_.clear();
     patches_.clear();
-    const PairMeshes pair(a, b);
+    const PairMeshes pair(a, b, of_file);
     follow_all(pair, ShapePair(*a.shape, a.pose, *b.shape, b.pose), loops_);
     if (loops_.crossings().empty() || !std::ranges::all_of(loops_.loops(), &Loop::is_closed)) return false;
     pieces_.list(pair, loops_.crossings());

@@ -35,8 +35,8 @@ struct OverlapPatch {
 /// What two closed bodies share, as patches of pressure. Keeps nothing but memory from one pair to the next.
 class OverlapPatches {
 public:
-    /// Whether the surfaces cross, and in closed loops alone. Both bodies have an inside.
-    bool find(const PlacedBody& a, const PlacedBody& b);
+    /// Whether the surfaces cross, and in closed loops alone. Both bodies have an inside. of_file: as of PairMeshes.
+    bool find(const PlacedBody& a, const PlacedBody& b, bool of_file);
     std::span<const FaceOverlap> faces() const { return overlaps_; } ///< sorted by faces, of a first
     std::span<const OverlapPatch> patches() const { return patches_; }
     const InnerSurfaces& surfaces() const { return surfaces_; }
