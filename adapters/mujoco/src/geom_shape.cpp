@@ -69,7 +69,9 @@ Mesh height_field(const Geom& geom) {
     for (const int layer : {0, 1})
         for (int r = 0; r < rows; ++r)
             for (int c = 0; c < columns; ++c) {
-                const double height = layer == 0 ? high * double(geom.vertices[std::size_t(r * columns + c)]) : -base;
+                const double height =
+                    layer == 0 ? high * double(geom.vertices[std::size_t(r) * std::size_t(columns) + std::size_t(c)])
+                               : -base;
                 mesh.vertices.push_back({x * (2.0 * c / (columns - 1) - 1), y * (2.0 * r / (rows - 1) - 1), height});
             }
     const auto quad = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
@@ -159,7 +161,8 @@ public:
                 return known->second->shape;
             }
         }
-        const auto made = Shape::make(mesh_of(geom)); // two threads may make it twice: both have the same
+        std::shared_ptr<const Shape> made =
+            Shape::make(mesh_of(geom)); // two threads may make it twice: both have the same
         const std::scoped_lock lock(mutex_);
         if (const auto known = places_.find(key); known != places_.end()) return known->second->shape;
         used_.push_front({key, made});
