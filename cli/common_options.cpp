@@ -103,8 +103,9 @@ void add_common_options(CLI::App& command, raycontact::Settings& settings) {
              [&](const std::string& word) { settings.paper.caster = caster_from(word); });
     add_word(
         command, "--direction",
-        "what normal and depth are made of: ray, weighted (as ray, and each contact has its vertex's area in m^2 as "
-        "weight), reprojected (along the normal of the face that was hit) or refined (to the nearest face)",
+        "what normal and depth are made of: ray, weighted (for springs: contacts of faces, or of vertices alone as "
+        "ray, with areas in m^2 as weights), reprojected (along the normal of the face that was hit) or refined (to "
+        "the nearest face)",
         "WORD", std::string(to_string(settings.direction)),
         [&](const std::string& word) { settings.direction = direction_from(word); });
     add_word(command, "--features",

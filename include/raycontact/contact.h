@@ -87,9 +87,9 @@ struct Contact {
     /// source's surface (Shape::vertex_areas; of edges, a sixth of the mean area of their triangles, of two at each
     /// edge). Other directions: 1.
     float weight = 1;
-    /// The witness points, world frame, metres: the source's vertex or a point of a's edge, and the point on the other
-    /// body that lies `depth` along the normal from it (with direction `reprojected` in the plane of the face that was
-    /// hit). point_a - point_b = depth x normal: a reaches that much too far.
+    /// The witness points, world frame, metres: the source's vertex, a point of a's edge, or beside the middle of what
+    /// faces share, and the other body's, which lies `depth` along the normal from it (with direction `reprojected` in
+    /// the plane of the face that was hit). point_a - point_b = depth x normal: a reaches that much too far.
     Vec3 point_a;
     Vec3 point_b; ///< the witness point of body_b
 

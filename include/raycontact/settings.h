@@ -22,7 +22,7 @@ enum class Method {
 /// What a contact's normal and depth are made of.
 enum class Direction {
     ray,         ///< along the ray itself, depth = |r| (Hermann et al. 2008)
-    weighted,    ///< as ray, and each contact has its vertex's area as weight (after Hermann et al. 2008)
+    weighted,    ///< with edges patches, weights are areas; else as ray, weights of vertices (Hermann et al. 2008)
     reprojected, ///< along the normal of the face that was hit, depth = r . n (paper section 3.2, equation 2)
     refined,     ///< to the nearest point of the faces by which the vertex can leave; depth = its distance
 };

@@ -48,10 +48,7 @@ bool known_outside(const Accelerators* mesh, const Vec3& p) {
 
 bool is_inside(const SourceMesh& placed, const Vec3& p) {
     const ShapeData& mesh = placed.target;
-    if (!box_of(mesh).touches({p, p}) || known_outside(placed.target_accelerators, p)) return false;
-    // Any direction serves; this one is related to no axis and no diagonal.
-    const MeshHit hit = closest_hit(mesh, {p, {0.5402, 0.3173, 0.7794}, 0, 1e300});
-    return hit.face != NONE && hit.from_inside;
+    return !known_outside(placed.target_accelerators, p) && encloses(mesh, p);
 }
 
 // Whether a component of the source lies in the target; needs surfaces that do not cross, and a closed target.

@@ -17,12 +17,7 @@ std::span<const EdgePiece> pieces_of(std::span<const EdgePiece> all, std::size_t
 
 bool is_inside(const PairMeshes& pair, std::size_t side, std::uint32_t vertex) {
     const std::size_t other = 1 - side;
-    const Vec3 p = pair.point_in(other, pair.vertex(side, vertex));
-    const ShapeData& mesh = pair.shape(other);
-    if (!box_of(mesh).touches({p, p})) return false;
-    // Any direction serves; this one is related to no axis and no diagonal.
-    const MeshHit hit = closest_hit(mesh, {p, {0.5402, 0.3173, 0.7794}, 0, 1e300});
-    return hit.face != NONE && hit.from_inside;
+    return encloses(pair.shape(other), pair.point_in(other, pair.vertex(side, vertex)));
 }
 
 } // namespace

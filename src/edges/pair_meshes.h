@@ -100,6 +100,14 @@ struct FeatureContact {
     double when = 0; ///< the part of the step after which they meet: the target, and the normal with it, turns so far
 };
 
+/// Whether a point lies in a closed mesh, by a ray; centred frame.
+inline bool encloses(const ShapeData& mesh, const Vec3& p) {
+    if (!box_of(mesh).touches({p, p})) return false;
+    // Any direction serves; this one is related to no axis and no diagonal.
+    const MeshHit hit = closest_hit(mesh, {p, {0.5402, 0.3173, 0.7794}, 0, 1e300});
+    return hit.face != NONE && hit.from_inside;
+}
+
 /// An edge of a shape, 3 x its lowest triangle + its first corner there.
 struct EdgeFaces {
     std::uint32_t own, across; ///< across: NONE at a border

@@ -180,15 +180,18 @@ std::size_t of_round(const Geom& round, const Geom& mesh, double margin, std::sp
     const std::vector<SignedDistance> all = signed_distance(*shape, at_mesh, centres, 1);
     for (int i = 0; i <= samples; ++i) {
         const auto value = [&](int k) { return all[static_cast<std::size_t>(k)].distance; };
-        const bool is_end = i == 0 || i == samples;
-        if (is_end) add(sample(i), all[static_cast<std::size_t>(i)]);
-        if ((i > 0 && value(i - 1) < value(i)) || (i < samples && value(i + 1) < value(i)) || is_end) continue;
-        // The distance changes no faster than the place, so there is a nearest one between these (golden section).
-        constexpr double golden = 0.6180339887498949;
+        if (i == 0 || i == samples) {
+            add(sample(i), all[static_cast<std::size_t>(i)]);
+            continue;
+        }
+        // A place between others that are farther; where the capsule lies flat its ends say it all.
+        const double clearly = 1e-6 * round.size[0];
         double low = sample(i - 1), high = sample(i + 1);
-        double p = high - golden * (high - low), q = low + golden * (high - low), at_p = near(p).distance,
-               at_q = near(q).distance;
-        if (value(i) - (high - low) > round.size[0] + margin) continue;
+        if (!(value(i - 1) > value(i) + clearly) || value(i + 1) < value(i)) continue;
+        if (value(i) - (high - low) > round.size[0] + margin) continue; // it changes no faster than the place
+        constexpr double golden = 0.6180339887498949;                   // section (Kiefer 1953)
+        double p = high - golden * (high - low), q = low + golden * (high - low);
+        double at_p = near(p).distance, at_q = near(q).distance;
         for (int k = 0; k < refinements; ++k) {
             if (at_p < at_q) {
                 high = std::exchange(q, p);

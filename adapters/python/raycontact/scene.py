@@ -99,7 +99,7 @@ class Scene:
         method: "certified" (skips what cannot touch yet; contacts as "standard"), "standard" (every ray, every step),
             "iterative", "predictive" (Lehericey et al. 2013).
         direction: what normals and depths are made of: "reprojected" (the face that was hit), "refined" (the nearest
-            way out), "ray" or "weighted" (along the ray, Hermann et al. 2008).
+            way out), "ray" (along the ray, Hermann et al. 2008), "weighted" (with edges patches, for springs).
         features: "edges" (vertices and sharp edges: no two closed meshes intersect unnoticed) or "vertices" (the
             paper's rule).
         speculative: also contacts before anything touches, with depth <= 0, within `speculative_margin` metres (None:

@@ -5,6 +5,7 @@
 #include "single.h"
 #include "without_gil.h"
 
+#include <raycontact/interruption.h>
 #include <raycontact/query.h>
 
 #include <nanobind/stl/pair.h>
@@ -52,7 +53,7 @@ public:
         std::vector<Rows> near;
         {
             const WithoutGil without_gil;
-            near = near_pairs(others);
+            near = near_pairs(others, without_gil.flag());
             for (std::size_t i = 0; i < std::min(alone, near.size()); ++i)
                 if (meet(near[i], others)) return true;
         }
@@ -68,7 +69,7 @@ public:
         std::vector<Rows> near;
         {
             const WithoutGil without_gil;
-            near = near_pairs(others);
+            near = near_pairs(others, without_gil.flag());
             std::ranges::sort(near);
         }
         std::vector<char> hit(near.size());
@@ -121,39 +122,59 @@ private:
         return intersects(*shapes_[rows.first], poses_[rows.first], *other.shapes_[rows.second],
                           other.poses_[rows.second]);
     }
-    std::vector<std::uint32_t> by_begin() const {
+    std::vector<std::uint32_t> by_begin(std::size_t axis) const {
         std::vector<std::uint32_t> order(boxes_.size());
         std::iota(order.begin(), order.end(), 0u);
-        std::ranges::sort(order, {}, [&](std::uint32_t i) { return boxes_[i].low[0]; });
+        std::ranges::sort(order, {}, [&](std::uint32_t i) { return boxes_[i].low[axis]; });
         return order;
     }
-    /// Whose boxes touch: sort and sweep along x.
-    std::vector<Rows> near_pairs(const PlacedList* others) const {
+    /// Along which they reach farthest.
+    std::size_t longest_axis() const {
+        std::array<double, 3> extent{};
+        for (std::size_t k = 0; k < 3; ++k) {
+            const auto [first, last] = std::ranges::minmax(boxes_, {}, [&](const Box& box) { return box.low[k]; });
+            extent[k] = last.low[k] - first.low[k];
+        }
+        return static_cast<std::size_t>(std::ranges::max_element(extent) - extent.begin());
+    }
+    /// Whose boxes touch: sort and sweep. stopped: by Ctrl-C; null: never.
+    std::vector<Rows> near_pairs(const PlacedList* others, const std::atomic<bool>* stopped) const {
         std::vector<Rows> found;
-        const std::vector<std::uint32_t> own = by_begin();
+        if (boxes_.empty() || (others != nullptr && others->boxes_.empty())) return found;
+        const auto check = [&] {
+            if (stopped != nullptr && *stopped) throw Interrupted();
+        };
+        const std::size_t axis =
+            others != nullptr && others->boxes_.size() > boxes_.size() ? others->longest_axis() : longest_axis();
+        const std::vector<std::uint32_t> own = by_begin(axis);
         if (others == nullptr) {
-            for (std::size_t i = 0; i < own.size(); ++i)
-                for (std::size_t k = i + 1; k < own.size() && boxes_[own[k]].low[0] <= boxes_[own[i]].high[0]; ++k) {
+            for (std::size_t i = 0; i < own.size(); ++i) {
+                check();
+                for (std::size_t k = i + 1; k < own.size() && boxes_[own[k]].low[axis] <= boxes_[own[i]].high[axis];
+                     ++k) {
                     const Rows rows = std::minmax(own[i], own[k]);
                     if (boxes_[own[i]].touches(boxes_[own[k]]) && !is_allowed(rows)) found.push_back(rows);
                 }
+            }
             return found;
         }
         // Of two boxes that touch one begins in the other.
-        const std::vector<std::uint32_t> theirs = others->by_begin();
-        const auto begin_of = [](const PlacedList& list) {
-            return [&list](std::uint32_t i) { return list.boxes_[i].low[0]; };
+        const std::vector<std::uint32_t> theirs = others->by_begin(axis);
+        const auto begin_of = [axis](const PlacedList& list) {
+            return [&list, axis](std::uint32_t i) { return list.boxes_[i].low[axis]; };
         };
         for (const std::uint32_t i : own) {
+            check();
             const Box& box = boxes_[i];
-            for (auto at = std::ranges::lower_bound(theirs, box.low[0], {}, begin_of(*others));
-                 at != theirs.end() && others->boxes_[*at].low[0] <= box.high[0]; ++at)
+            for (auto at = std::ranges::lower_bound(theirs, box.low[axis], {}, begin_of(*others));
+                 at != theirs.end() && others->boxes_[*at].low[axis] <= box.high[axis]; ++at)
                 if (box.touches(others->boxes_[*at])) found.emplace_back(i, *at);
         }
         for (const std::uint32_t k : theirs) {
+            check();
             const Box& box = others->boxes_[k];
-            for (auto at = std::ranges::upper_bound(own, box.low[0], {}, begin_of(*this));
-                 at != own.end() && boxes_[*at].low[0] <= box.high[0]; ++at)
+            for (auto at = std::ranges::upper_bound(own, box.low[axis], {}, begin_of(*this));
+                 at != own.end() && boxes_[*at].low[axis] <= box.high[axis]; ++at)
                 if (box.touches(boxes_[*at])) found.emplace_back(*at, k);
         }
         return found;
