@@ -208,7 +208,7 @@ void write_files(raycontact::output::OutFolder& folder, const RunLog& log, std::
 void warn_if_open(const SceneDescription& scene, const BodyStart& body) {
     const raycontact::Shape& shape = *scene.shapes[body.shape].shape;
     const raycontact::MeshReport& report = shape.report();
-    if (report.closed && report.oriented) return;
+    if (report.solid) return;
     std::string what = "badly wound: faces at an edge disagree on which side is out; turn some over";
     if (!report.closed) {
         what = fmt::format("open, with {}: bodies that come from behind its faces pass it",

@@ -45,18 +45,19 @@ Vec3 get_vector(ByteSource& from) {
     return v;
 }
 
-/// What is true or false of a mesh, a bit each. `checked` is recorded as its opposite.
+/// What is true or false of a mesh, a bit each. `checked` and `solid` are recorded as their
+/// opposites.
 constexpr std::pair<bool MeshReport::*, std::uint32_t> flags[] = {{&MeshReport::closed, 1},
                                                                   {&MeshReport::manifold, 2},
                                                                   {&MeshReport::oriented, 4},
                                                                   {&MeshReport::self_intersecting, 8},
                                                                   {&MeshReport::outward, 16}};
-constexpr std::uint32_t unchecked = 32;
+constexpr std::uint32_t unchecked = 32, hollow = 64;
 
 void put(Bytes& to, const MeshReport& r) {
     for (const std::uint64_t n : {r.vertices, r.triangles, r.file_vertices, r.file_triangles, r.components})
         recording::put(to, n);
-    std::uint32_t bits = r.checked ? 0 : unchecked;
+    std::uint32_t bits = (r.checked ? 0 : unchecked) | (r.solid ? 0 : hollow);
     for (const auto& [flag, bit] : flags)
         if (r.*flag) bits |= bit;
     recording::put(to, bits);
@@ -75,6 +76,7 @@ MeshReport get_report(ByteSource& from) {
     const auto bits = from.get<std::uint32_t>();
     for (const auto& [flag, bit] : flags) r.*flag = bits & bit;
     r.checked = !(bits & unchecked);
+    r.solid = r.closed && r.oriented && !(bits & hollow);
     r.volume = from.get_double();
     r.area = from.get_double();
     r.box_min = get_vector(from);

@@ -35,13 +35,9 @@ def has_repair(report, column):
     return any(text.startswith(begin) and any(word in text for word in words.split("|")) for text in report.repairs)
 
 
-def has_inside(report):
-    return report.closed and report.oriented
-
-
 def kind_of(report):
     """What pairs are of; the first that fits."""
-    if not has_inside(report):
+    if not report.solid:
         return "sheet"
     if report.self_intersecting or not report.outward:
         return "crossing"
@@ -86,7 +82,7 @@ def table_of(folders, options):
         for (shape, file), report in zip(loaded, reports):
             by_kind[kind_of(report)].append((shape, file))
         cells = [len(files), len(files) - len(loaded)]
-        inside = [r for r in reports if has_inside(r)]
+        inside = [r for r in reports if r.solid]
         holes = sum(r.holes > 0 for r in inside)
         cells += [len(inside) - holes, holes, len(reports) - len(inside)]
         cells += [sum(r.verdict.startswith("good for contacts") for r in reports)]

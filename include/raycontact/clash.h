@@ -51,7 +51,7 @@ struct Clash {
     Vec3 point_b;             ///< likewise on that of b
     Vec3 normal;              ///< of that contact, unit, from a to b; near: the way from point_a to point_b; else 0
     std::size_t contacts = 0; ///< how many the two have
-    bool open_a = false; ///< a is not closed: nothing is inside it, and a depth says how far it reaches into b alone
+    bool open_a = false; ///< a has no inside, and a depth says how far it reaches into b alone
     bool open_b = false; ///< likewise b
     /// About what both share, along the axes, right to some 1e-7 of the smaller part. Where one of them has no inside:
     /// about the curves in which they cross. None: they touch, or are near.
@@ -83,7 +83,7 @@ struct ClashReport {
     std::vector<Clash> clashes;
     std::size_t pairs = 0; ///< that were tested: their boxes, grown by clearance or tolerance, touch
     std::vector<std::pair<std::size_t, std::string>> faults; ///< parts that could not be tested, and why; rising
-    std::vector<std::size_t> open;                           ///< parts that were tested and are not closed; rising
+    std::vector<std::size_t> open;                           ///< parts that were tested and have no inside; rising
 };
 
 /// The parts of all files, in their order (load_assembly), under names that differ: where several have the same, the

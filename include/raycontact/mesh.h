@@ -65,6 +65,7 @@ struct MeshReport {
     std::uint64_t file_vertices = 0;  ///< as in the file
     std::uint64_t file_triangles = 0; ///< as in the file, polygons split
     bool closed = false; ///< every edge has a triangle on both sides (each edge met an even number of times, >= 2)
+    bool solid = false; ///< has an inside: closed and oriented, but walls back to back that hold nothing are not
     std::uint64_t border_edges = 0;   ///< edges met an odd number of times; 0: closed
     std::uint64_t holes = 0;          ///< spanned ones, as Holes has it
     std::uint64_t spanning = 0;       ///< triangles that span them: not in the file, numbered after its own
@@ -74,7 +75,7 @@ struct MeshReport {
     bool self_intersecting = false;   ///< two triangles meet elsewhere than in their shared vertices or edge
     bool outward = false;             ///< closed and oriented, winding number 0 outside and 1 inside everywhere
     std::uint64_t components = 0;     ///< connected over shared vertices
-    double volume = 0;                ///< m^3, signed; 0 when not closed
+    double volume = 0;                ///< m^3, signed; 0 unless solid
     double area = 0;                  ///< m^2
     Vec3 box_min;                     ///< least coordinates, body frame, metres
     Vec3 box_max;                     ///< greatest coordinates, body frame, metres
@@ -158,7 +159,7 @@ RAYCONTACT_API PreparedMesh prepare_mesh(const Mesh& mesh, const PrepareOptions&
 /// ten that does, metres, up to 1e-4 of the diagonal of its box. None where none does, or the file is closed.
 RAYCONTACT_API std::optional<double> closing_weld(const PreparedMesh& mesh);
 
-/// Whether contacts with a mesh are what the rule of contact says: it is closed, wound outward, and does not intersect
+/// Whether contacts with a mesh are what the rule of contact says: it is solid, wound outward, and does not intersect
 /// itself.
 struct Verdict {
     bool good;        ///< they are
@@ -167,7 +168,7 @@ struct Verdict {
 /// Of a mesh that has this report.
 RAYCONTACT_API Verdict verdict_of(const MeshReport& report);
 
-/// "solid", "solid with holes", which are spanned, or "sheet": closed or not, and wound alike everywhere.
+/// "solid", "solid with holes", which are spanned, or "sheet", which has no inside.
 RAYCONTACT_API std::string kind_of(const MeshReport& report);
 
 /// As text for a person.

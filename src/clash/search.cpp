@@ -144,8 +144,8 @@ void set_points(Clash& clash, const Part& a, const Part& b) {
 /// Of two parts that share a point.
 void set_kind(Answer& answer, const Part& a, const Part& b, const ClashOptions& options) {
     Clash& clash = *answer.clash;
-    clash.open_a = !a.shape->report().closed;
-    clash.open_b = !b.shape->report().closed;
+    clash.open_a = !a.shape->has_inside();
+    clash.open_b = !b.shape->has_inside();
     if (clash.kind == ClashKind::nearby || clash.distance > 0) return;
     set_points(clash, a, b);
     const bool solid = a.shape->has_inside() && b.shape->has_inside();
@@ -297,7 +297,7 @@ ClashReport find_clashes(std::span<const AssemblyPart> given, const ClashOptions
                 [&](std::size_t done, std::size_t total) { options.progress(shapes * double(done) / double(total)); });
     for (std::size_t i = 0; i < parts.size(); ++i) {
         if (!parts[i].fault.empty()) report.faults.emplace_back(i, parts[i].fault);
-        if (parts[i].shape && !parts[i].shape->report().closed) report.open.push_back(i);
+        if (parts[i].shape && !parts[i].shape->has_inside()) report.open.push_back(i);
     }
     std::erase_if(pairs, [&](const PartPair& pair) { return !parts[pair.a].shape || !parts[pair.b].shape; });
     Executor executor(options.threads);

@@ -46,6 +46,7 @@ void fill_topology(MeshReport& report, std::span<const Triangle> triangles, std:
         if (components.join(sides[0].lo, sides[0].hi)) --report.components;
     });
     report.closed = report.border_edges == 0;
+    report.solid = report.closed && report.oriented;
     report.manifold = report.manifold && fan_count == report.vertices;
 }
 
@@ -108,7 +109,7 @@ void fill_report(PreparedMesh& prepared, std::span<const HalfEdge> edges) {
     report.vertices = prepared.vertices.size();
     report.triangles = prepared.triangles.size();
     fill_topology(report, prepared.triangles, edges);
-    report.volume = report.closed ? volume_of(prepared.vertices, prepared.triangles) : 0;
+    report.volume = report.solid ? volume_of(prepared.vertices, prepared.triangles) : 0;
     LongSum area;
     for (const auto& [a, b, c] : prepared.triangles) {
         const Vec3& corner = prepared.vertices[a];
@@ -132,7 +133,7 @@ void check_surface(PreparedMesh& prepared, const Patches& patches, std::span<con
 }
 
 std::string kind_of(const MeshReport& report) {
-    if (!report.closed || !report.oriented) return "sheet";
+    if (!report.solid) return "sheet";
     return report.spanning > 0 ? "solid with holes" : "solid";
 }
 
@@ -152,7 +153,7 @@ std::string to_text(const MeshReport& report) {
     line("self-intersecting  ", yes(report.self_intersecting));
     line("outward            ", yes(report.outward));
     line("components         ", std::to_string(report.components));
-    line("volume             ", report.closed ? full_text_of(report.volume) + " m^3" : "none, not closed");
+    line("volume             ", report.solid ? full_text_of(report.volume) + " m^3" : "none, a sheet");
     line("area               ", full_text_of(report.area) + " m^2");
     line("box                ", point(report.box_min) + "  to  " + point(report.box_max) + " m");
     if (report.repairs.empty()) line("repairs            ", "none");
@@ -176,7 +177,7 @@ std::string to_json(const MeshReport& report) {
     json["self_intersecting"] = report.self_intersecting;
     json["outward"] = report.outward;
     json["components"] = report.components;
-    json["volume"] = report.closed ? nlohmann::ordered_json(report.volume) : nlohmann::ordered_json();
+    json["volume"] = report.solid ? nlohmann::ordered_json(report.volume) : nlohmann::ordered_json();
     json["area"] = report.area;
     json["box"] = {{report.box_min.x, report.box_min.y, report.box_min.z},
                    {report.box_max.x, report.box_max.y, report.box_max.z}};
@@ -193,6 +194,9 @@ Verdict verdict_of(const MeshReport& report) {
         faults.emplace_back("open", edges() + ", so it has no inside; close it, or use it as a one-sided sheet");
     if (!report.oriented)
         faults.emplace_back("badly wound", "triangles at an edge disagree on which side is out; turn some over");
+    if (report.closed && report.oriented && !report.solid)
+        faults.emplace_back("hollow", "walls back to back that hold nothing, so it has no inside; use it as a one-sided "
+                                      "sheet, or give its walls a thickness");
     if (report.self_intersecting)
         faults.emplace_back("self-intersecting",
                             "where its surfaces overlap the closest face decides what is inside; unite its parts");

@@ -252,7 +252,7 @@ std::string text_of(const Hole& hole, std::span<const Vec3> vertices) {
 
 bool is_solid(const PreparedMesh& spanned, std::size_t first_spanning, const MeshTree& tree, Executor& executor) {
     const auto spanning = std::span(spanned.triangles).subspan(first_spanning);
-    const std::size_t samples = std::clamp<std::size_t>(10'000'000 / spanning.size(), 60, 300);
+    const std::size_t samples = std::clamp<std::size_t>(10'000'000 / (1 + spanning.size()), 60, 300);
     const std::vector<std::uint32_t> chosen = sampled(spanned, first_spanning, samples);
     enum Answer : char { unclear, broken, outer, inner };
     std::vector<Answer> answers(samples, unclear);

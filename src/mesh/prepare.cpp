@@ -228,8 +228,13 @@ public:
         return false;
     }
 
-    PreparedMesh finish(bool is_solid, Check check) {
+    /// is_solid: it is known to be one. repaired: no triangle is there twice.
+    PreparedMesh finish(bool is_solid, bool repaired, Check check) {
         fill_report(prepared_, edges_);
+        MeshReport& found = prepared_.report;
+        if (repaired && !is_solid && found.solid) // walls back to back that hold nothing are closed, too
+            found.solid = raycontact::is_solid(prepared_, prepared_.triangles.size(), surface_->tree(), executor_);
+        if (!found.solid) found.volume = 0;
         prepared_.report.outward = is_solid;
         prepared_.report.checked = is_solid;
         if (!is_solid && check == Check::full) check_surface(prepared_, patches_, exact_, surface_->tree(), executor_);
@@ -337,7 +342,7 @@ PreparedMesh prepare_mesh(const Mesh& mesh, const PrepareOptions& options) {
     if (repair && options.holes != Holes::none) preparation.span_holes(options.holes);
     if (repair) preparation.turn_components(options.nesting); // holes closed: else a cavity would be outermost
     const bool is_solid = repair && options.overlaps == Overlaps::unite && preparation.unite_parts(name);
-    return preparation.finish(is_solid, options.check);
+    return preparation.finish(is_solid, repair, options.check);
 }
 
 MeshReport measured_report(const PreparedMesh& mesh, Executor& executor) {

@@ -14,7 +14,7 @@ namespace {
 
 void check_inside(const Shape& shape, const char* what) {
     if (!shape.has_inside())
-        throw InputError(std::string(what) + " has no inside (it is not closed, or not wound alike): close it first");
+        throw InputError(std::string(what) + " has no inside (raycontact mesh says why): close it first");
 }
 
 PlacedBody body_of(const Shape& shape, const Pose& pose) {

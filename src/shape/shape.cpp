@@ -134,7 +134,7 @@ std::shared_ptr<const Shape> Shape::make(PreparedMesh mesh, std::uint32_t thread
 
     // Bounds of the float32 error in a ray test, with a margin: docs/internals/devices.md derives them. Rays into an
     // open mesh may start well outside its box.
-    shape.header.closed = shape.mesh.report.closed && shape.mesh.report.oriented ? 1 : 0;
+    shape.header.closed = shape.mesh.report.solid ? 1 : 0;
     shape.header.outward = shape.header.closed != 0 && shape.mesh.report.outward ? 1 : 0;
     shape.header.tolerance = static_cast<float>(8 * rounding * shape.diagonal);
     const double grow = (shape.header.closed ? 32 : 256) * rounding * shape.diagonal;

@@ -41,7 +41,7 @@ void find_principal_axes(MassProperties& mass) {
 MassProperties mass_properties(const Shape& shape) {
     MassProperties p;
     const Vec3 low = shape.box_min(), high = shape.box_max();
-    if (shape.report().closed) static_cast<Mass&>(p) = mass_of(shape.vertices(), shape.triangles());
+    if (shape.has_inside()) static_cast<Mass&>(p) = mass_of(shape.vertices(), shape.triangles());
     if (!(p.volume > 0)) {
         const double x = high.x - low.x, y = high.y - low.y, z = high.z - low.z;
         p.volume = x * y * z;

@@ -291,6 +291,36 @@ TEST(Holes, SheetsStaySheets) {
     }
 }
 
+// Walls without thickness: every edge has two triangles, yet nothing is between them.
+TEST(Holes, ClosedWallsBackToBackThatHoldNothingAreASheet) {
+    for (const std::size_t walls : {2u, 8u, 10u, 12u})
+        for (const bool same_diagonals : {true, false}) {
+            if (walls == 12 && same_diagonals) continue; // a solid there twice: one goes
+            Mesh mesh = box();
+            mesh.triangles.resize(walls);
+            for (std::size_t i = 0; i < walls; i += 2) {
+                // A square is the fan of its first corner; the others' fan has the other diagonal.
+                const auto [a, b, c] = mesh.triangles[i];
+                const std::uint32_t d = mesh.triangles[i + 1][2];
+                ASSERT_EQ(mesh.triangles[i + 1], (Triangle{a, c, d}));
+                if (same_diagonals)
+                    mesh.triangles.insert(mesh.triangles.end(), {{c, b, a}, {d, c, a}});
+                else
+                    mesh.triangles.insert(mesh.triangles.end(), {{d, b, a}, {d, c, b}});
+            }
+            const MeshReport report = prepare_mesh(mesh).report;
+            EXPECT_TRUE(report.closed && report.oriented) << walls;
+            EXPECT_FALSE(report.solid) << walls;
+            EXPECT_EQ(kind_of(report), "sheet");
+            EXPECT_EQ(report.volume, 0);
+            EXPECT_EQ(verdict_of(report).text.substr(0, 8), "hollow: ");
+            EXPECT_FALSE(verdict_of(report).good);
+            EXPECT_FALSE(Shape::make(mesh)->has_inside());
+        }
+    EXPECT_TRUE(prepare_mesh(box()).report.solid);
+    EXPECT_TRUE(prepare_mesh(box(), {.overlaps = Overlaps::leave}).report.solid);
+}
+
 TEST(Holes, OfSheetsThoseThatAreFlatOrSmallAreSpannedOnRequest) {
     Mesh mesh = box();
     mesh.triangles.resize(10);
