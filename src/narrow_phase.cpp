@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "narrow_phase.h"
 
+#include "contacts/refine.h"
 #include "device/device.h"
 #include "executor/row_slices.h"
 #include "free_all.h"
@@ -72,6 +73,10 @@ void NarrowPhase::wake() {
 void NarrowPhase::begin_anew() noexcept {
     parts_.forget(); // what they kept may be wrong, and slots may get other bodies before the next step
     assignment_.forget();
+    forget_contacts();
+}
+
+void NarrowPhase::forget_contacts() noexcept {
     contacts_.clear();
     left_out_.clear();
     seen_ = 0;
@@ -122,6 +127,7 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, const SlotChanges& mo
         face_contacts_.run(executor, settings_, bodies, found);
         const ContactStore::Asked asked{!few_, asked_.pairs, pairs.closed()};
         reducer_.run(executor, settings_, bodies, {contacts_, left_out_, moved.is_next(seen_)}, found);
+        if (settings_.direction == Direction::refined) refine(executor, bodies, found);
         contacts_.replace(executor, asked, found);
         if (!left_out_.all().empty() || !reducer_.left_out().empty())
             left_out_.replace(executor, asked, reducer_.left_out());

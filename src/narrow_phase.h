@@ -44,6 +44,8 @@ public:
     }
     /// A step that failed has no contacts. Its pairs begin anew.
     void begin_anew() noexcept;
+    /// As if the last step had found none. After prepare().
+    void forget_contacts() noexcept;
 
     /// pairs: their changes are those since the last step. Fills stats. broad_ms: milliseconds that it took to find the
     /// pairs.

@@ -458,6 +458,12 @@ void Scene::prepare() {
     state_->narrow.parts().accelerate_shapes();
 }
 
+void Scene::forget_contacts() {
+    state_->narrow.prepare();
+    state_->narrow.forget_contacts();
+    state_->stepped = 0;
+}
+
 std::span<const Contact> Scene::find_contacts() {
     const FloatEnvironment environment;
     const auto start = std::chrono::steady_clock::now();

@@ -111,6 +111,10 @@ public:
     /// other one; and InputError for a pair of a body with itself or one that is not in the scene, before it begins.
     std::span<const Contact> find_contacts(std::span<const Pair> pairs);
 
+    /// As if the last step had found nothing: the contacts of the next are all new, and which of them stay (Settings::
+    /// max_contacts_per_pair) depends on that step alone. What methods keep for pairs stays, and so do answers.
+    void forget_contacts();
+
     /// Of the last step; sorted by the slots of both bodies, then by key(). Valid until the next step.
     std::span<const Contact> contacts() const noexcept;
     /// The same list for as long as it is held, by any thread: later steps write into another one.

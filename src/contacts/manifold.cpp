@@ -5,7 +5,7 @@
 #include "shape/mesh_rays.h"
 
 #include <algorithm>
-#include <numeric>
+#include <utility>
 
 namespace raycontact {
 
@@ -53,10 +53,10 @@ bool say_the_same(const ManifoldPoint& a, const ManifoldPoint& b) {
 }
 
 void join_patches(std::span<const ManifoldPoint> points, double cosine, std::vector<ManifoldPatch>& patches) {
-    std::vector<std::uint32_t> order(points.size());
-    std::iota(order.begin(), order.end(), 0);
-    std::ranges::stable_sort(order, std::ranges::greater(), [&](std::uint32_t i) { return points[i].depth; });
-    for (const std::uint32_t i : order) {
+    std::vector<std::pair<double, std::uint32_t>> order; // by their depths alone: points lie far apart in memory
+    for (std::uint32_t i = 0; i < points.size(); ++i) order.emplace_back(-points[i].depth, i);
+    std::ranges::sort(order);
+    for (const auto& [_, i] : order) {
         const std::size_t home = suitable(points[i], cosine, patches);
         if (home == patches.size()) patches.push_back({points[i].normal, points[i].position, {}});
         patches[home].points.push_back(i);

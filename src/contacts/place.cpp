@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "contacts/place.h"
 
-#include "contacts/refine.h"
 #include "contacts/write_contact.h"
 #include "executor/row_slices.h"
 #include "mesh/vector.h"
@@ -56,6 +55,7 @@ void place(Contact& contact, const Directed& pair, const kernels::LocalContact& 
                                  pair.target.mesh.triangle_index[local.triangle]),
                   {turned.x + origin.x, turned.y + origin.y, turned.z + origin.z}, out, depth, local.distance,
                   pair.direction == Direction::weighted ? shape.vertex_areas[local.vertex] : 1);
+    contact.is_new = pair.direction == Direction::refined; // as Refiner::awaits()
 }
 
 // Sorts a pair's placed contacts in behind `count` of its vertices: from the back, where there is room for them.
@@ -88,9 +88,6 @@ void Placer::run(Executor& executor, Direction direction, std::span<const Placed
         }
         std::sort(order_.begin() + begin, order_.begin() + end);
         for (std::uint32_t i = begin; i < end; ++i) place(to[i - begin], pair, local[order_[i] & 0xffffffff]);
-        if (direction != Direction::refined) return;
-        const Refiner refiner(source, target);
-        for (std::uint32_t i = begin; i < end; ++i) refiner.refine(to[i - begin], local[order_[i] & 0xffffffff]);
     };
     const auto pair_at = [&](std::size_t i) { return local[i].pair / 2; };
     const RowSlices slices{local.size(), 256};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "contacts/reduce.h"
 
+#include "contacts/refine.h"
 #include "free_all.h"
 #include "mesh/vector.h"
 
@@ -21,10 +22,35 @@ ManifoldPoint point_of(const Contact& contact, double place) {
             std::numeric_limits<double>::infinity(), place};
 }
 
+// The length of a ray tells where the other body is, whichever face of it the contact is refined to.
 bool is_same(const Contact& a, const Contact& b) {
-    return order_of(a) == order_of(b) && a.body_a == b.body_a && a.body_b == b.body_b && a.normal == b.normal
-           && a.depth == b.depth && a.ray_length == b.ray_length && a.weight == b.weight && a.point_a == b.point_a
-           && a.point_b == b.point_b;
+    const bool by_ray = a.feature.kind == FeatureKind::vertex;
+    return order_of(a) == order_of(b) && a.body_a == b.body_a && a.body_b == b.body_b && a.ray_length == b.ray_length
+           && a.weight == b.weight && a.point() == b.point()
+           && (by_ray || (a.normal == b.normal && a.depth == b.depth));
+}
+
+// Refines contacts of a pair until the deepest is known; no other is deeper than it then, but rays may lead far beyond
+// the nearest way out. Their depths say the most that they can be.
+void find_deepest(const Refiner& refiner, std::span<Contact> contacts) {
+    std::vector<std::pair<float, std::uint32_t>> most; // a heap, the deepest first
+    float deepest = 0;
+    for (std::uint32_t i = 0; i < contacts.size(); ++i) {
+        Contact& contact = contacts[i];
+        if (Refiner::awaits(contact))
+            most.emplace_back(static_cast<float>(refiner.most_depth(contact)), i);
+        else
+            deepest = std::max(deepest, contact.depth);
+    }
+    std::ranges::make_heap(most);
+    std::size_t left = most.size();
+    for (; left > 0 && most[0].first > deepest; --left) {
+        std::ranges::pop_heap(std::span(most).first(left));
+        Contact& contact = contacts[most[left - 1].second];
+        refiner.refine(contact);
+        deepest = std::max(deepest, contact.depth);
+    }
+    for (const auto& [depth, i] : std::span(most).first(left)) contacts[i].depth = std::min(contacts[i].depth, depth);
 }
 
 // Gives a pair's contacts the choice of the last step, if they are what the pair had.
@@ -95,7 +121,11 @@ void ContactReducer::run(Executor& executor, const Settings& settings, std::span
             while (++next < end && belongs(next)) {
             }
             const std::span ranks(ranks_.begin() + std::ptrdiff_t(begin), next - begin);
-            const auto own = std::span<const Contact>(contacts).subspan(begin, next - begin);
+            const auto own = std::span(contacts).subspan(begin, next - begin);
+            if (settings.direction == Direction::refined) {
+                const auto [a, b] = pair_of(own.front());
+                find_deepest(Refiner(bodies[a], bodies[b]), own);
+            }
             // A budget is shared out by ranks.
             if (settings.max_contacts == 0 && choose_as_before(last, own, ranks)) continue;
             rank(points, bodies, last.kept, own, ranks);

@@ -25,6 +25,7 @@ public:
         bool has_settings; ///< they were chosen in the step before, by these settings
     };
     /// contacts: of some pairs, all of each, sorted. Those that stay keep their order.
+    /// Of those that await to be refined (Refiner) as many are refined as it takes to know the deepest of each pair.
     void run(Executor& executor, const Settings& settings, std::span<const PlacedBody> bodies, const Last& last,
              std::vector<Contact>& contacts);
     /// Of the last run; sorted; may be taken.

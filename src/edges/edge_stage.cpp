@@ -108,6 +108,7 @@ void place(Contact& contact, const FeatureContact& found, BodyId a, BodyId b, co
     const auto depth = static_cast<float>(found.depth);
     Vec3 out = rotated(target.centred.rotation, found.normal);
     if (found.when > 0) out = part_of_turn(out, rotated(target.next.rotation, found.normal), found.when);
+    contact.is_new = false; // it awaits nothing
     write_contact(contact, a, b, feature, transform_point(target.centred, found.point), out, depth, std::fabs(depth),
                   direction == Direction::weighted ? weight_of(shape, other, found) : 1);
 }

@@ -81,9 +81,14 @@ Settings limited(std::uint32_t per_pair, std::uint32_t all = 0) {
     return settings;
 }
 
-TEST(Reduction, KeepsSomeOfAllAndTheDeepestOfEachPair) {
+class ReductionOf : public testing::TestWithParam<Direction> {};
+
+// Of `refined` only those that stay are refined, and as many as it takes to know the deepest.
+TEST_P(ReductionOf, KeepsSomeOfAllAndTheDeepestOfEachPair) {
     for (const std::uint32_t most : {1u, 2u, 4u, 8u, 1000u}) {
-        Crowd full({}), fewer(limited(most));
+        Settings all_kept, few_kept = limited(most);
+        all_kept.direction = few_kept.direction = GetParam();
+        Crowd full(all_kept), fewer(few_kept);
         std::size_t left_out = 0;
         for (int step = 0; step < 10; ++step) {
             const auto all = full.step(), kept = fewer.step();
@@ -107,6 +112,31 @@ TEST(Reduction, KeepsSomeOfAllAndTheDeepestOfEachPair) {
             left_out += stats.contacts_reduced;
         }
         EXPECT_GT(left_out, 1000u) << most;
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Directions, ReductionOf,
+                         testing::Values(Direction::reprojected, Direction::refined, Direction::ray),
+                         [](const auto& info) { return std::string(to_string(info.param)); });
+
+// What a scene has forgotten neither stays nor is any longer known: it is as in a scene that begins there.
+TEST(Reduction, OfForgottenContactsPrefersNone) {
+    for (const Direction direction : {Direction::reprojected, Direction::refined}) {
+        Settings settings = limited(4);
+        settings.direction = direction;
+        Crowd crowd(settings);
+        for (int step = 0; step < 6; ++step) {
+            crowd.step();
+            crowd.scene().forget_contacts();
+            EXPECT_TRUE(crowd.scene().contacts().empty());
+            const auto found = crowd.scene().find_contacts(); // though nothing moved
+            ASSERT_FALSE(found.empty());
+            EXPECT_TRUE(std::ranges::all_of(found, &Contact::is_new));
+            Scene fresh(settings);
+            for (const BodyId body : crowd.scene().bodies())
+                fresh.add(crowd.scene().shape(body).shared_from_this(), crowd.scene().pose(body));
+            EXPECT_TRUE(same_bits(found, fresh.find_contacts()));
+        }
     }
 }
 
