@@ -256,17 +256,21 @@ void CertifiedRays::cast(const Update& update, RayBatch& batch) {
 
 // What was near is sought a little farther out than it must be, since each source more is asked in every step; where
 // nothing was near, far out, since a list of nothing spares all. A list that would not last some steps is not worth its
-// width.
+// width; nor is one that found much where nothing was before.
 NearLists::Search CertifiedRays::search_of(const DueNear& due, const KeptNear& kept, bool moves, double margin) {
     const bool empty = kept.count() == 0;
-    if (due.once) return {due.pair, 0, 0, static_cast<float>(margin), 0, moves};
-    double more = empty ? std::clamp(6 * due.speed, 0.005 * due.size, 0.015 * due.size)
+    NearLists::Search search{due.pair, 0, 0, static_cast<float>(margin), 0, moves, kept.reach};
+    if (due.once) return search;
+    double more = empty ? double(kept.reach) * std::clamp(6 * due.speed, 0.005 * due.size, 0.015 * due.size)
                         : std::clamp(6 * due.speed, 0.002 * due.size, 0.006 * due.size);
     if (more < 4 * due.speed) more = 0;
     double ahead = std::clamp(4 * due.speed, 0.02 * due.size, 0.1 * due.size);
     if (!empty) ahead = margin > 0 ? 0.003 * due.size : 0;
     if (moves) ahead = 0;
-    return {due.pair, static_cast<float>(more), static_cast<float>(ahead), static_cast<float>(margin), 0, moves};
+    search.margin = static_cast<float>(more);
+    search.ahead = static_cast<float>(ahead);
+    search.is_wide = empty && more > 0;
+    return search;
 }
 
 void CertifiedRays::find_points(const Update& update, RayBatch& batch) {

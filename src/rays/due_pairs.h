@@ -31,6 +31,7 @@ struct Candidates {
 struct KeptNear {
     std::uint32_t first = 0, capacity = 0;
     std::array<std::uint32_t, 2> counts{}; ///< of the first body, of the second
+    float reach = 1; ///< of how far a list of nothing is sought: less where so much was near that it did not pay
     std::uint32_t count() const { return counts[0] + counts[1]; }
 };
 

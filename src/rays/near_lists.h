@@ -14,11 +14,13 @@ namespace raycontact {
 class NearLists {
 public:
     struct Search {
-        std::uint32_t pair;  ///< its place
-        float margin, ahead; ///< metres beyond what is needed that they are sought; beyond that, that bounds are
-        float speculative;   ///< of what is needed: metres within which they have speculative contacts
-        float least;         ///< metres: edges that hide less may be left out (docs/internals/edges.md)
-        bool moves;          ///< what they come near on their way to the next step is needed
+        std::uint32_t pair;   ///< its place
+        float margin, ahead;  ///< metres beyond what is needed that they are sought; beyond that, that bounds are
+        float speculative;    ///< of what is needed: metres within which they have speculative contacts
+        float least;          ///< metres: edges that hide less may be left out (docs/internals/edges.md)
+        bool moves;           ///< what they come near on their way to the next step is needed
+        float reach = 1;      ///< as KeptNear, of the last list
+        bool is_wide = false; ///< sought as far as nothing may be near
     };
     NearLists(BlockSearch::Sources sources, KeptNear CertifiedPair::*kept, double Slack::*slack)
         : rays_(sources), kept_(kept), slack_(slack) {}
