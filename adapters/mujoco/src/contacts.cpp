@@ -48,14 +48,15 @@ bool is_round(const Geom& geom) {
     return geom.kind == Geom::Kind::ball || geom.kind == Geom::Kind::capsule;
 }
 
+Point point_of(const ManifoldPoint& found) {
+    const auto triple = [](const Vec3& v) { return Triple{v.x, v.y, v.z}; };
+    return {-found.depth, triple(found.position), triple(found.normal)};
+}
+
 /// Those that stand for all, in an order that puts the most important first.
-std::size_t choose(std::vector<ManifoldPoint>& found, std::span<Point> points) {
-    std::vector<std::uint32_t> chosen = choose_contacts(found, points.size());
-    for (std::size_t i = 0; i < chosen.size(); ++i) {
-        const ManifoldPoint& point = found[chosen[i]];
-        const auto triple = [](const Vec3& v) { return Triple{v.x, v.y, v.z}; };
-        points[i] = {-point.depth, triple(point.position), triple(point.normal)};
-    }
+std::size_t choose(const std::vector<ManifoldPoint>& found, std::span<Point> points) {
+    const std::vector<std::uint32_t> chosen = choose_contacts(found, points.size());
+    for (std::size_t i = 0; i < chosen.size(); ++i) points[i] = point_of(found[chosen[i]]);
     told += chosen.size();
     left_out += found.size() - chosen.size();
     return chosen.size();
@@ -66,6 +67,7 @@ struct PairKey {
     std::shared_ptr<const Shape> a, b;
     int number_a, number_b;
     bool speculative;
+    std::uint32_t most; ///< contacts
     bool operator==(const PairKey&) const = default;
 };
 struct PairKeyHash {
@@ -81,16 +83,16 @@ struct PairScene {
     Scene scene;
     Pair pair;
 
-    static Settings settings(bool speculative) {
+    static Settings settings(const PairKey& key) {
         Settings settings;
         settings.direction = Direction::refined;
-        settings.speculative = speculative;
+        settings.speculative = key.speculative;
+        settings.max_contacts_per_pair = key.most;
         settings.execution.threads = 1;
         settings.execution.devices = "cpu";
         return settings;
     }
-    explicit PairScene(const PairKey& of)
-        : key(of), scene(settings(of.speculative)), pair{scene.add(of.a), scene.add(of.b)} {}
+    explicit PairScene(const PairKey& of) : key(of), scene(settings(of)), pair{scene.add(of.a), scene.add(of.b)} {}
 };
 
 /// The thread's own for a pair; those used last are kept.
@@ -115,7 +117,8 @@ std::size_t of_meshes(const Geom& a, const Geom& b, double margin, std::span<Poi
     const double size = std::min(diagonal(*shape_a), diagonal(*shape_b));
     const double asked = margin;
     margin = std::min(margin, largest_margin * size);
-    PairScene& own = scene_of({shape_a, shape_b, a.number, b.number, margin > 0});
+    PairScene& own =
+        scene_of({shape_a, shape_b, a.number, b.number, margin > 0, static_cast<std::uint32_t>(points.size())});
     const auto& [first, second] = own.pair;
     own.scene.set_pose(first, pose_of(a));
     own.scene.set_pose(second, pose_of(b));
@@ -124,25 +127,23 @@ std::size_t of_meshes(const Geom& a, const Geom& b, double margin, std::span<Poi
         own.scene.set_next_pose(first, pose_of(a)); // where they are: what was asked before says nothing
         own.scene.set_next_pose(second, pose_of(b));
     }
-    std::vector<ManifoldPoint> found;
+    own.scene.forget_contacts(); // nor which of them it chose
+    std::size_t count = 0;
     for (const Contact& c : own.scene.find_contacts({&own.pair, 1})) {
         if (-double(c.depth) >= margin && c.is_speculative()) continue;
-        found.push_back(
-            {{0.5 * (c.point_a.x + c.point_b.x), 0.5 * (c.point_a.y + c.point_b.y), 0.5 * (c.point_a.z + c.point_b.z)},
-             c.normal,
-             double(c.depth),
-             any_distance,
-             one_place * size});
+        points[count++] = point_of({plus(c.point_a, 0.5, plus(c.point_b, -1, c.point_a)), c.normal, double(c.depth)});
     }
-    if (found.empty() && asked > margin) { // as mj_geomDistance and its sensors ask
+    left_out += own.scene.stats().contacts_reduced;
+    if (count == 0 && asked > margin) { // as mj_geomDistance and its sensors ask
         const auto nearest = distance(*shape_a, pose_of(a), *shape_b, pose_of(b), asked);
         if (nearest && nearest->distance > 0 && nearest->distance < asked) {
             const Vec3 way = plus(nearest->point_b, -1, nearest->point_a);
-            found.push_back({plus(nearest->point_a, 0.5, way), plus({}, 1 / nearest->distance, way), -nearest->distance,
-                             any_distance, one_place * size});
+            points[count++] =
+                point_of({plus(nearest->point_a, 0.5, way), plus({}, 1 / nearest->distance, way), -nearest->distance});
         }
     }
-    return choose(found, points);
+    told += count;
+    return count;
 }
 
 /// Where a ball of the round geom `ball` meets the mesh: its point of the axis at `at`.
@@ -219,6 +220,7 @@ Counts counts() {
 
 std::size_t find_points(const Geom& a, const Geom& b, double margin, std::span<Point> points, bool& off_centre) {
     ++calls;
+    if (points.empty()) return 0;
     if (is_round(a)) return of_round(a, b, margin, points, true, off_centre);
     if (is_round(b)) return of_round(b, a, margin, points, false, off_centre);
     return of_meshes(a, b, margin, points, off_centre);

@@ -22,6 +22,7 @@ struct Geom {
     std::array<double, 9> rotation{}; ///< geom_xmat
     Triple translation{};             ///< geom_xpos
     int number = 0;                   ///< of the geom in its model
+    bool is_field = false;            ///< an SDF: prepared as a whole before its first contact, as MuJoCo bakes it
 };
 
 /// Forgets all shapes.

@@ -199,7 +199,9 @@ Shapes& shapes() {
 } // namespace
 
 std::shared_ptr<const Shape> shape_of(const Geom& geom, bool& off_centre) {
-    return shapes().of(geom, off_centre);
+    std::shared_ptr<const Shape> shape = shapes().of(geom, off_centre);
+    if (geom.is_field && !shape->is_prepared()) shape->prepare();
+    return shape;
 }
 
 void forget_shapes() {

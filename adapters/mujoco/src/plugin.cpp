@@ -80,6 +80,7 @@ bool read(const mjModel* m, const mjData* d, int g, Geom& geom) {
     }
     if (id < 0) return false;
     geom.kind = Geom::Kind::mesh;
+    geom.is_field = m->geom_type[g] == mjGEOM_SDF;
     geom.vertices = {m->mesh_vert + 3 * m->mesh_vertadr[id], 3 * std::size_t(m->mesh_vertnum[id])};
     geom.faces = {m->mesh_face + 3 * m->mesh_faceadr[id], 3 * std::size_t(m->mesh_facenum[id])};
     return true;
