@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A wheel works where there is nothing but NumPy: each kind of call once, with answers that are known."""
 
+import pickle
 import sys
 
 import numpy as np
@@ -34,6 +35,9 @@ def main() -> None:
         assert "8" in str(error)
     else:
         raise AssertionError("a vertex that does not exist was taken")
+    nut, bolt = (rc.Shape(rc.samples()[name]) for name in ("nut", "bolt"))
+    assert nut.report.good and 0 < rc.distance(bolt, pickle.loads(pickle.dumps(nut))).distance < 1e-4
+    assert scene.overlaps_any([cube, cube], beside) is True
     devices = ", ".join(device.id for device in rc.list_devices() if device.usable)
     versions = f"Python {sys.version.split()[0]}, NumPy {np.__version__}"
     print(f"raycontact {rc.__version__} works on {versions}; devices: {devices}")

@@ -41,6 +41,9 @@ const Format& format_of(const InputFile& file) {
     const std::string ending = lower_case(file.path.extension().string());
     for (const Format& format : formats)
         if (ending == format.ending) return format;
+    if (ending == ".dae")
+        file.fail("COLLADA (.dae) is not read; save it as .glb or .obj, or in Python, with trimesh and pycollada: "
+                  "raycontact.Mesh(trimesh.load(file, force=\"mesh\"))");
     file.fail("unknown ending " + in_quotes(ending) + "; known are .obj .stl .ply .off .gltf .glb" + if_3mf(" .3mf"));
 }
 

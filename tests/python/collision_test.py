@@ -9,7 +9,7 @@ from collections import namedtuple
 import numpy as np
 import pytest
 import raycontact as rc
-from raycontact import _boxes, _shared_shapes, collision
+from raycontact import _shared_shapes, collision
 from raycontact.collision import CollisionManager, ContactData, DistanceData, scene_to_collision
 
 Given = namedtuple("Given", "vertices faces")
@@ -678,7 +678,7 @@ def test_random_managers(seed):
                     found[name, second] = rc.distance(x.shape, y.shape, x.pose, y.pose).distance
         return found
 
-    external = collision._Object(single, single.box, pose)
+    external = collision._Object(single, pose)
     for distances, collide, nearest in (
         (all_pairs(one._objects, one._objects), one.in_collision_internal, one.min_distance_internal),
         (
@@ -721,41 +721,54 @@ def test_random_managers(seed):
 
 
 class TestBroadPhase:
-    @pytest.mark.parametrize("most", [1, 50, 1 << 20])
-    def test_pairs_are_those_of_all(self, most, monkeypatch):
-        monkeypatch.setattr(_boxes, "_MOST_PAIRS", most)
-        rng = np.random.default_rng(most)
-        for _ in range(30):
+    def test_boxes_meet_and_are_apart_as_all_pairs_say(self):
+        """Boxes as objects on a coarse lattice: many begin at one place, many touch."""
+        rng = np.random.default_rng(0)
+        cubes = {size: rc.Shape(box(*size)) for size in [(1, 1, 1), (3, 1, 1), (1, 3, 2), (2, 2, 2)]}
 
-            def some(n):
-                low = rng.integers(0, 12, (n, 3)).astype(float)  # many equal and touching
-                return _boxes.Boxes(low, low + rng.integers(0, 4, (n, 3)))
+        def some(n):
+            """The manager; boxes as (2, n, 3)."""
+            manager, low, high = CollisionManager(), [], []
+            for i in range(n):
+                size = list(cubes)[rng.integers(4)]
+                corner = rng.integers(0, 14, 3).astype(float)
+                manager.add_object(i, cubes[size], at(*(corner + np.array(size) / 2)))
+                low.append(corner)
+                high.append(corner + size)
+            return manager, np.array(low).reshape(-1, 3), np.array(high).reshape(-1, 3)
 
-            a, b = some(rng.integers(0, 60)), some(rng.integers(0, 40))
-            gap = rng.choice([0.0, 1.0, 2.5, np.inf])
-            for second in (None, b):
-                other = a if second is None else second
-                apart = np.maximum(other.low[None] - a.high[:, None], a.low[:, None] - other.high[None])
+        for _ in range(25):
+            one, two = some(rng.integers(0, 40)), some(rng.integers(0, 30))
+            for first, second in ((one, one), (one, two)):
+                apart = np.maximum(second[1][None] - first[2][:, None], first[1][:, None] - second[2][None])
                 between = np.linalg.norm(np.maximum(apart, 0), axis=2)
-                wanted = {(i, j) for i, j in np.argwhere(between <= gap).tolist() if second is not None or i < j}
-                found = list(_boxes.pairs_within(gap, a, second))
-                pairs = [pair for chunk in found for pair in zip(chunk.a.tolist(), chunk.b.tolist())]
-                assert len(pairs) == len(set(pairs)) and set(pairs) == wanted
-                for chunk in found:
-                    assert chunk.gap == pytest.approx(between[chunk.a, chunk.b])
-                few = _boxes.some_near_pairs(a, second)
-                assert (few.gap[1:] >= few.gap[:-1]).all() and len(few.gap) <= 16
-                every = (i < j if second is None else True for i, j in zip(few.a, few.b))
-                assert all(every) and (len(few.gap) > 0) == (len(a.low) > (second is None) and len(other.low) > 0)
+                if second is first:
+                    between[np.tril_indices(len(between))] = np.inf
+                    found = first[0].in_collision_internal(return_names=True)
+                    any_meets, least = first[0].in_collision_internal(), first[0].min_distance_internal()
+                else:
+                    found = first[0].in_collision_other(second[0], return_names=True)
+                    any_meets, least = first[0].in_collision_other(second[0]), first[0].min_distance_other(second[0])
+                wanted = {tuple(pair) for pair in np.argwhere(between == 0).tolist()}
+                assert found == (bool(wanted), wanted) and any_meets is bool(wanted)
+                assert least == pytest.approx(between.min(initial=np.inf), abs=1e-12)
 
-    def test_boxes_hold_their_bodies(self):
-        rng = np.random.default_rng(1)
-        for shape in SHAPES:
-            for scale in (1e-3, 1.0, 1e6):
-                pose = anywhere(rng, scale)
-                boxes = _boxes.boxes_of(shape.box[None], pose[None])
-                points = shape.vertices @ pose[:3, :3].T + pose[:3, 3]
-                assert (points >= boxes.low[0]).all() and (points <= boxes.high[0]).all()
+    def test_objects_keep_their_places_as_others_come_and_go(self):
+        manager, cube = CollisionManager(), rc.Shape(box())
+        for i in range(5):
+            manager.add_object(i, cube, at(10 * i, 0, 0))
+        assert not manager.in_collision_internal()
+        manager.set_transform(0, at(30.5, 0, 0))
+        manager.remove_object(1)
+        assert manager.in_collision_internal(return_names=True)[1] == {(0, 3)}
+        manager.set_transform(3, at(19.5, 0, 0).astype(np.float32))
+        manager.add_object(5, cube, at(30, 0.5, 0))
+        assert manager.in_collision_internal(return_names=True)[1] == {(2, 3), (0, 5)}
+        with pytest.raises(ValueError, match="object 2: transform: is not rigid"):
+            manager.set_transform(2, np.diag([2.0, 2, 2, 1]))
+        with pytest.raises(ValueError, match="object 9: is not in the manager"):
+            manager.set_transform(9, np.eye(4))
+        assert manager.in_collision_internal(return_names=True)[1] == {(2, 3), (0, 5)}
 
     def test_thousands_of_objects_take_no_square_of_memory(self):
         rng = np.random.default_rng(0)
@@ -771,24 +784,17 @@ class TestBroadPhase:
         assert hit and len(names) > 100
         assert peak < 8 * 6000**2 / 3  # a third of one matrix of distances
 
-    def test_far_pairs_are_not_asked_for_their_distance(self, monkeypatch):
-        asked = []
-
-        def count(a, *rest, **words):
-            asked.append(len(a))
-            return rc.distance(a, *rest, **words)
-
-        monkeypatch.setattr(collision, "distance", count)
+    def test_far_pairs_are_not_asked_for_their_distance(self):
         rng = np.random.default_rng(0)
         manager, solid = CollisionManager(), rc.Shape(ring())
         grid = [at(4 * x, 4 * y, 4 * z) for x in range(10) for y in range(10) for z in range(10)]
         for i, place in enumerate(grid):
             manager.add_object(i, solid, place @ anywhere(rng, 0.4))
         manager.min_distance_internal()
-        assert sum(asked) < 3000  # of 499 500 pairs: boxes of turned rings overlap
-        asked.clear()
+        placed = manager._list().placed
+        assert 0 < placed.asked < 3000  # of 499 500 pairs: boxes of turned rings overlap
         manager.min_distance_single(solid, at(1, 2, -9))
-        assert sum(asked) < 50  # of 1000
+        assert 0 < placed.asked < 50  # of 1000
 
 
 # Against trimesh's own manager, whose answers FCL finds.

@@ -15,7 +15,7 @@ import raycontact as rc
 LATEST = 20  # seconds after Ctrl-C; each call takes far longer if nobody ends it
 
 
-def ended_by_ctrl_c(call, after=0.5):
+def ended_by_ctrl_c(call, after=0.5, latest=LATEST):
     """Whether the call raises KeyboardInterrupt soon after a real SIGINT."""
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
     pressed = []
@@ -29,7 +29,7 @@ def ended_by_ctrl_c(call, after=0.5):
     try:
         call()
     except KeyboardInterrupt:
-        return bool(pressed) and time.monotonic() - pressed[0] < LATEST
+        return bool(pressed) and time.monotonic() - pressed[0] < latest
     finally:
         timer.join()
     return False
@@ -83,6 +83,29 @@ def test_a_batch(ring):
     poses = rc.pose(np.random.default_rng(1).uniform(0, 1, (1_000_000, 3)))
     assert ended_by_ctrl_c(lambda: rc.distance(ring, ring, pose_b=poses))
     assert rc.intersects(ring, ring)
+
+
+@pytest.mark.parametrize("threads", [0, 1])
+def test_contacts_of_many_dense_pairs(threads):
+    dense = rc.Shape(rc.Mesh(*meshes.torus(around=192, across=96)))
+    poses = helpers.random_poses(8000, 0.5)
+    assert ended_by_ctrl_c(lambda: rc.collide(dense, dense, pose_b=poses, threads=threads), latest=2)
+    assert len(rc.collide(dense, dense, pose_b=poses[0])) > 0
+
+
+def test_contacts_of_a_million_pairs():
+    """As soon as of a few: what is made for all of them can be ended, too."""
+    small = rc.Shape(rc.Mesh(*meshes.torus(around=8, across=4)))
+    poses = rc.pose(np.random.default_rng(1).uniform(0, 1, (1_500_000, 3)))
+    assert ended_by_ctrl_c(lambda: rc.collide(small, small, pose_b=poses), 1.5, latest=2)
+
+
+def test_overlaps_of_a_scene(ring):
+    scene = crowd(ring, 300)
+    poses = helpers.random_poses(200_000, 0.5)
+    assert ended_by_ctrl_c(lambda: scene.overlaps(ring, poses), 1.0, latest=2)
+    assert ended_by_ctrl_c(lambda: scene.overlaps_any(ring, poses, wanted=[]) and scene.overlaps(ring, poses), 1.0)
+    assert scene.overlaps_any(ring)
 
 
 def test_what_comes_before_and_after(ring):

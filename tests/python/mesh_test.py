@@ -2,10 +2,14 @@
 """Meshes, shapes and assemblies from Python: what is given arrives."""
 
 import collections
+import concurrent.futures
 import copy
+import multiprocessing
 import pickle
 import zipfile
 
+import brute_force
+import helpers
 import meshes
 import numpy as np
 import pytest
@@ -155,8 +159,58 @@ def test_meshes_are_pickled_and_shapes_are_shared_by_copies(torus):
     again = pickle.loads(pickle.dumps(mesh))
     assert np.array_equal(again.vertices, mesh.vertices) and np.array_equal(again.triangles, mesh.triangles)
     assert again.name == "L" and copy.deepcopy([torus])[0] is torus and copy.copy(torus) is torus
-    with pytest.raises(TypeError, match="pickle its Mesh"):
-        pickle.dumps(torus)
+
+
+def shapes_of_many_kinds():
+    vertices, faces = meshes.torus()
+    two = (np.concatenate([vertices, vertices + [0.3, 0.1, 0.05]]), np.concatenate([faces, faces + len(vertices)]))
+    far = vertices + [1e6 / 3, -7.7, 1 / 3]  # in float32 about their middle they are others
+    yield "plain", rc.Shape(rc.Mesh(vertices, faces, name="ring"))
+    yield "far", rc.Shape(rc.Mesh(far, faces))
+    yield "holed", rc.Shape(rc.Mesh(vertices, np.delete(faces, [3, 200], axis=0)))
+    yield "united", rc.Shape(rc.Mesh(*two))
+    yield "crossing", rc.Shape(rc.Mesh(*two), overlaps="leave")
+    yield "inward", rc.Shape(rc.Mesh(vertices, faces[:, ::-1]), repair=False)
+    yield "sheet", rc.Shape(rc.Mesh(vertices, faces[::3]))
+    yield "welded", rc.Shape(rc.Mesh(*loose(vertices, faces, 1e-9), weld=1e-6))
+
+
+@pytest.mark.parametrize(("kind", "shape"), [pytest.param(*both, id=both[0]) for both in shapes_of_many_kinds()])
+def test_a_pickled_shape_is_the_same_to_the_bit(kind, shape, bracket):
+    again = pickle.loads(pickle.dumps(shape))
+    for name in ("vertices", "triangles", "vertex_index", "triangle_index", "vertex_normals", "vertex_areas",
+                 "exit_distances", "box"):  # fmt: skip
+        assert getattr(again, name).tobytes() == getattr(shape, name).tobytes(), name
+    for name in ("name", "has_inside", "radius", "longest_edge"):
+        assert getattr(again, name) == getattr(shape, name)
+    fields = [name for name in dir(shape.report) if not name.startswith("_") and name != "to_json"]
+    assert len(fields) > 18 and shape.report.to_json() == again.report.to_json()
+    for name in fields:
+        assert getattr(again.report, name) == getattr(shape.report, name), name
+    poses = helpers.random_poses(30, 1.5)
+    poses[:, :3, 3] += shape.box.mean(axis=0) * (kind == "far")
+    found = rc.collide(shape, bracket, pose_b=poses)
+    assert len(found) and helpers.same(rc.collide(again, bracket, pose_b=poses), found)
+    assert np.array_equal(rc.intersects(again, bracket, pose_b=poses), rc.intersects(shape, bracket, pose_b=poses))
+    assert pickle.loads(pickle.dumps(again.report)).repairs == shape.report.repairs
+
+
+def test_shapes_cross_to_other_processes(torus, bracket):
+    poses = helpers.random_poses(20, 1.2)
+    context = multiprocessing.get_context("spawn")
+    with concurrent.futures.ProcessPoolExecutor(1, mp_context=context) as pool:
+        theirs = pool.submit(rc.intersects, torus, bracket, pose_b=poses).result()
+    assert np.array_equal(theirs, rc.intersects(torus, bracket, pose_b=poses)) and theirs.any()
+
+
+def test_a_damaged_pickle_is_refused(torus):
+    make, (name, vertices, triangles, vertex_index, triangle_index, report) = torus.__reduce__()
+    with pytest.raises(rc.InputError, match="number of indices"):
+        make(name, vertices, triangles, vertex_index[1:], triangle_index, report)
+    with pytest.raises(rc.InputError):
+        make(name, vertices, triangles + np.uint32(1), vertex_index, triangle_index, report)
+    with pytest.raises(rc.InputError, match="another version"):
+        rc.MeshReport.__new__(rc.MeshReport).__setstate__(report.__getstate__()[1:])
 
 
 def test_an_object_with_vertices_and_faces_is_one_mesh_even_if_it_is_a_tuple(torus):
@@ -198,6 +252,80 @@ def test_scales_reach_files_shapes_assemblies_and_clashes(tmp_path):
         found = rc.clash(assembly, scale=0.001)
         assert len(found) == 1 and found[0].depth == pytest.approx(0.25, abs=1e-5), assembly
     assert rc.Shape(trimesh.creation.box((1000, 1000, 1000)), scale=0.001).box.tolist() == [[-0.5] * 3, [0.5] * 3]
-    for bad in (0, -1, np.nan, np.inf, "big"):
+    for bad in (0, np.nan, np.inf, "big", [1, 0, 1], [1, 2], (1, 2, np.inf), [[1, 1, 1]], [], None):
         with pytest.raises(rc.InputError, match="scale"):
             rc.Shape(trimesh.creation.box(), scale=bad)
+    for bad in (0, -1, np.nan, [1, 1, 1]):
+        with pytest.raises(rc.InputError, match="scale"):
+            rc.clash([trimesh.creation.box()] * 2, scale=bad)
+        with pytest.raises(rc.InputError, match="scale"):
+            rc.load_assembly(tmp_path / "mm.glb", scale=bad)
+
+
+@pytest.mark.parametrize(
+    "scale", [2, -1, (2, 3, 0.5), [-2, 3, 0.5], (-1, -3, 1), np.array([-1.5, -1, -1]), (1, 1, -0.001), -0.25]
+)
+def test_three_factors_stretch_and_mirror(scale, tmp_path):
+    vertices, faces = meshes.bracket()
+    (tmp_path / "L.stl").write_bytes(meshes.ascii_stl(vertices, faces))
+    factors = np.broadcast_to(scale, 3)
+    mesh = rc.Mesh(vertices, faces, scale=scale)
+    assert np.array_equal(mesh.vertices, vertices * factors)
+    assert [sorted(t) for t in mesh.triangles.tolist()] == [sorted(t) for t in faces.tolist()]
+    for made in (mesh, rc.Mesh(tmp_path / "L.stl", scale=scale), rc.Mesh(rc.Mesh(vertices, faces), scale=scale)):
+        shape = rc.Shape(made, repair=False)
+        assert shape.report.good and shape.report.volume == pytest.approx(3 * abs(np.prod(factors)))
+    shape = rc.Shape(rc.Mesh(vertices, faces), scale=scale)
+    points = RNG.uniform(-0.5, 2.5, (200, 3))
+    inside = brute_force.winding(points, vertices[faces]) > 0.5
+    assert inside.any() and np.array_equal(rc.contains(shape, points * factors), inside)
+
+
+def test_no_scale_changes_nothing():
+    mesh = rc.Mesh(*meshes.torus(), name="ring")
+    for one in (1, 1.0, (1, 1, 1), np.ones(3), np.float32(1)):
+        assert np.array_equal(rc.Mesh(mesh, scale=one).triangles, mesh.triangles)
+        assert rc.Shape(mesh, scale=one).name == "ring"
+
+
+def test_collada_files_are_read_by_others(tmp_path):
+    (tmp_path / "part.DAE").write_text("<COLLADA/>")
+    with pytest.raises(rc.InputError, match=r'part.DAE.*trimesh.load\(file, force="mesh"\)'):
+        rc.Mesh(tmp_path / "part.DAE")
+    with pytest.raises(rc.InputError, match="unknown ending"):
+        rc.Shape(tmp_path.joinpath("part.stp").write_text("ISO") and tmp_path / "part.stp")
+
+
+def doubled(vertices, faces):
+    return vertices, np.concatenate([faces, faces[:, ::-1]])
+
+
+@pytest.mark.parametrize("repair", [True, False])
+@pytest.mark.parametrize("shift", [0, 1e5])
+def test_report_and_mass_agree_about_volumes(repair, shift):
+    vertices, faces = meshes.torus()
+    vertices = vertices + shift
+    true = 2 * np.pi**2 * 0.35**2
+    inner = vertices.mean(axis=0) + (vertices - vertices.mean(axis=0)) * 0.5
+    cases = {
+        "closed": (vertices, faces),
+        "holed": (vertices, np.delete(faces, [3, 200], axis=0)),
+        "inward": (vertices, faces[:, ::-1]),
+        "open": (vertices, faces[::2]),
+        "doubled": doubled(vertices, faces[:200]),
+        "twice": (vertices, np.concatenate([faces, faces])),
+        "badly wound": (vertices, np.concatenate([faces[:100, ::-1], faces[100:]])),
+        "crossing": (np.concatenate([vertices, inner]), np.concatenate([faces, faces + len(vertices)])),
+        "flat": ([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]),
+    }
+    for name, mesh in cases.items():
+        shape = rc.Shape(rc.Mesh(*mesh), repair=repair)
+        assert shape.mass.volume == shape.report.volume, name
+        if shape.report.volume == 0:
+            assert not shape.mass.centre.any() and not shape.mass.inertia.any(), name
+        else:
+            assert (shape.mass.volume > 0) == (np.diag(shape.mass.inertia) > 0).all(), name
+        if name in ("closed", "holed", "inward") and (repair or name != "holed"):
+            sign = -1 if name == "inward" and not repair else 1
+            assert shape.mass.volume == pytest.approx(sign * true, rel=0.08)
+            assert shape.mass.centre == pytest.approx(np.full(3, shift), abs=1e-2)

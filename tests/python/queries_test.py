@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Queries from Python, of one and of many: answers are true, and batches have those of each."""
 
+import warnings
+
 import helpers
 import meshes
 import numpy as np
@@ -232,6 +234,151 @@ def test_poses_that_are_no_poses_are_named_as_they_were_given(torus):
     )
 
 
+def given_otherwise(poses):
+    """The same poses in each form that is taken."""
+    r, t = poses[..., :3, :3], poses[..., :3, 3]
+    yield r, t
+    yield r.tolist(), t.tolist()
+    transform = pytest.importorskip("scipy.spatial.transform")
+    if r.ndim <= 3:
+        yield transform.Rotation.from_matrix(r), t
+    if hasattr(transform, "RigidTransform") and r.ndim <= 3:
+        yield transform.RigidTransform.from_matrix(poses)
+
+
+@pytest.mark.parametrize("lead", [(), (6,), (3, 2)])
+def test_rotations_and_translations_are_poses(lead, torus, bracket):
+    poses = helpers.random_poses(6, 1.2).reshape(3, 2, 4, 4)[(0, 0) if not lead else ...].reshape(*lead, 4, 4)
+    points = RNG.uniform(-1, 1, (*lead, 3))
+    hits, inside = rc.intersects(torus, bracket, pose_b=poses), rc.contains(torus, points, poses)
+    far, contacts = rc.distance(torus, bracket, poses), rc.collide(torus, bracket, poses)
+    scene = rc.Scene()
+    ids = scene.add(torus, poses.reshape(-1, 4, 4))
+    for given in given_otherwise(poses):
+        assert np.allclose(rc.distance(torus, bracket, given).distance, far.distance, atol=1e-12)
+        assert np.array_equal(rc.intersects(torus, bracket, pose_b=given), hits)
+        assert np.array_equal(rc.contains(torus, points, given), inside)
+        assert np.allclose(rc.collide(torus, bracket, given).depth, contacts.depth, atol=1e-6)
+        assert np.allclose(rc.nearest_rigid(given), poses)
+        if len(lead) < 2:
+            scene.set_poses(ids, np.eye(4))
+            scene.set_poses(ids if lead else int(ids[0]), given)
+            assert np.allclose(scene.poses(), poses)
+            scene.set_next_poses(ids, given)
+            assert np.allclose(scene.poses(scene.add(torus, given)), poses)
+            scene.remove(scene.ids[len(ids) :])
+        if not lead:
+            assert np.array_equal(scene.overlaps(bracket, given), scene.overlaps(bracket, poses))
+            manager = rc.CollisionManager()
+            manager.add_object("torus", torus, given)
+            manager.set_transform("torus", given)
+            assert manager.min_distance_single(bracket) == pytest.approx(far.distance, abs=1e-12)
+    # One rotation for all, and the other way about.
+    if lead == (6,):
+        r, t = poses[0, :3, :3], poses[:, :3, 3]
+        assert np.array_equal(rc.intersects(torus, bracket, (r, t)), rc.intersects(torus, bracket, rc.pose(t, r)))
+        assert np.array_equal(rc.intersects(torus, bracket, (poses[:, :3, :3], t[0])),
+                              rc.intersects(torus, bracket, rc.pose(t[0], poses[:, :3, :3])))  # fmt: skip
+
+
+def test_two_poses_in_a_tuple_are_two_poses(torus):
+    two = tuple(rc.pose([[0, 0, 0], [9, 0, 0]]))
+    assert rc.intersects(torus, torus, pose_b=two).tolist() == [True, False]
+
+
+@pytest.mark.parametrize(
+    ("pose", "says"),
+    [
+        (np.eye(3), r"pose_b: has shape \(3, 3\), a rotation alone; give \(R, t\)"),
+        (np.tile(np.eye(3), (5, 1, 1)), r"pose_b: has shape \(5, 3, 3\), a rotation alone"),
+        ((np.eye(3), np.zeros(4)), r"pose_b: translation: has shape \(4,\)"),
+        ((np.tile(np.eye(3), (2, 1, 1)), np.zeros((3, 3))), "pose_b: translations .* do not fit"),
+        ((np.diag([1, 1, 1.1]), np.zeros(3)), "pose_b: not rigid"),
+        ((np.eye(3), [0, np.nan, 0]), "pose_b: an entry is not a finite number"),
+        ((np.eye(3), "here"), "pose_b: translation"),
+        ([np.eye(3), np.zeros(3)], "pose_b"),
+    ],
+)
+def test_rotations_and_translations_that_are_no_poses_are_told(torus, pose, says):
+    with pytest.raises(rc.InputError, match=says):
+        rc.intersects(torus, torus, pose_b=pose)
+
+
+def test_a_rotation_of_scipy_alone_is_no_pose(torus):
+    rotation = pytest.importorskip("scipy.spatial.transform").Rotation.identity()
+    with pytest.raises(rc.InputError, match="a rotation alone"):
+        rc.intersects(torus, torus, rotation)
+
+
+def test_contacts_are_records(torus):
+    contacts = rc.collide(torus, torus, pose_b=rc.pose([[0.5, 0, 0], [0, 0.6, 0]]))
+    assert len(contacts) > 2 and len(list(contacts)) == len(contacts)
+    for i, one in enumerate(contacts):
+        assert one.depth == one["depth"] == contacts.depth[i] and one.kind == contacts.kind[i]
+        for name in ("bodies", "point_a", "point_b", "normal", "indices"):
+            assert np.array_equal(getattr(one, name), getattr(contacts, name)[i])
+            assert np.shares_memory(getattr(one, name), contacts.data)
+        with pytest.raises((ValueError, TypeError)):
+            one.depth = 7
+    assert not list(rc.collide(torus, torus, pose_b=rc.pose([9, 0, 0]))) and not (contacts.depth == 7).any()
+
+
+def test_single_questions_have_plain_numbers(torus):
+    point, pose = np.array([3.0, 0, 0]), rc.pose([0, 0, 0])
+    for make, one, many in (
+        (lambda p: rc.distance(torus, torus, pose_b=p), rc.OneDistance, rc.Distance),
+        (lambda p: rc.closest_point(torus, point, p), rc.OneClosestPoint, rc.ClosestPoint),
+        (lambda p: rc.signed_distance(torus, point, p), rc.OneSignedDistance, rc.SignedDistance),
+        (lambda p: rc.raycast(torus, point, [-1, 0, 0], p), rc.OneRayHit, rc.RayHit),
+    ):
+        for given in (None, pose, pose.tolist()):
+            found = make(given)
+            assert type(found) is one and isinstance(found, many) and type(found.distance) is float
+            assert not hasattr(found, "__dict__") and found._fields == many._fields
+        assert type(make(pose[None])) is many
+    assert type(rc.intersects(torus, torus)) is type(rc.contains(torus, point)) is bool
+    assert type(rc.raycast_any(torus, point, point)) is bool
+
+
+# Sheets
+
+ASKED = {
+    "contains": lambda s: rc.contains(s, np.zeros(3)),
+    "contains, many": lambda s: rc.contains(s, [[0, 0, 0]]),
+    "signed_distance": lambda s: rc.signed_distance(s, [0, 0, 0]),
+    "distance": lambda s: rc.distance(s, s),
+    "distance, many": lambda s: rc.distance([s, s], s, pose_b=[np.eye(4)]),
+    "distance_grid": lambda s: rc.distance_grid(s, (2, 2, 1)),
+}
+
+
+@pytest.mark.parametrize("asked", ASKED)
+def test_sheets_are_told_once(asked, torus):
+    vertices, faces = meshes.torus()
+    sheet = rc.Shape(rc.Mesh(vertices, faces[::3], name="shell"))
+    with pytest.warns(rc.SheetWarning, match=r"the mesh 'shell' has no inside.*border edges.*close it") as told:
+        ASKED[asked](sheet)
+    assert len(told) == 1 and told[0].filename == __file__ and issubclass(rc.SheetWarning, UserWarning)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        for ask in ASKED.values():
+            ask(sheet)
+            ask(torus)
+    with pytest.warns(rc.SheetWarning):
+        rc.distance(torus, rc.Shape(rc.Mesh(vertices, faces[::3])))
+
+
+def test_other_questions_say_nothing_of_sheets(torus):
+    vertices, faces = meshes.torus()
+    sheet, scene = rc.Shape(rc.Mesh(vertices, faces[::3])), rc.Scene()
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        rc.collide(sheet, torus), rc.intersects(sheet, torus), rc.raycast(sheet, [0, 0, 5], [0, 0, -1])
+        rc.closest_point(sheet, [0, 0, 5])
+        scene.add([sheet, torus])
+        scene.find_contacts(), scene.overlaps(sheet)
+
+
 def test_rotations_of_scipy_are_taken():
     rotation = pytest.importorskip("scipy.spatial.transform").Rotation.from_euler("z", 90, degrees=True)
     assert np.allclose(rc.pose([1, 2, 3], rotation), rc.pose_from_quaternion([1, 2, 3], [1, 0, 0, 1]))
@@ -271,7 +418,19 @@ def test_plain_arguments_and_others_agree(torus, bracket):
         assert one.point_a.tolist() == many.point_a.tolist()
         near, listed = rc.closest_point(torus, point, pose), rc.closest_point(torus, point.tolist(), pose)
         assert near.distance == listed.distance and near.point.tolist() == listed.point.tolist()
-        assert rc.contains(torus, point, pose) == rc.contains(torus, point.tolist(), pose)
+        forms = (point, point.tolist(), tuple(point), tuple(point.tolist()), point.astype(object).astype(float))
+        away = rc.signed_distance(torus, point[None], pose[None])
+        hits = rc.raycast(torus, [point, point], [other[0, :3], -other[0, :3]], pose)
+        for form in forms:
+            assert rc.contains(torus, form, pose) == rc.contains(torus, [form], pose)[0]
+            assert rc.closest_point(torus, form, pose).triangle == near.triangle
+            signed = rc.signed_distance(torus, form, pose)
+            assert [x.tolist() for x in map(np.asarray, signed)] == [x[0].tolist() for x in away]
+            for k, along in enumerate((other[0, :3], -other[0, :3])):
+                for direction in (along, along.tolist()):
+                    hit = rc.raycast(torus, form, direction, pose)
+                    assert [repr(x.tolist()) for x in map(np.asarray, hit)] == [repr(x[k].tolist()) for x in hits]
+                    assert rc.raycast_any(torus, form, direction, pose) is bool(hit.distance < np.inf)
         assert type(rc.contains(torus, point, pose)) is bool and type(rc.intersects(torus, torus, pose)) is bool
     far = rc.distance(torus, bracket, None, rc.pose([90, 0, 0]), max=1.0)
     assert far.distance == np.inf and np.isnan(far.point_a).all() and far.triangle_a == -1
@@ -280,3 +439,8 @@ def test_plain_arguments_and_others_agree(torus, bracket):
                       (np.full((4, 4), np.nan), "finite"), (np.eye(4).T + np.eye(4)[::-1], "last row")):  # fmt: skip
         with pytest.raises(rc.InputError, match=says):
             rc.intersects(torus, torus, bad)
+    for bad in ([0, 0], (0, 0, "1"), [0, 0, None], [0, 0, np.nan], [0, 0, 10**400], [[0, 0, 1], [0, 0]]):
+        for ask in (rc.contains, rc.closest_point, rc.signed_distance, lambda s, p: rc.raycast(s, p, [0, 0, 1]),
+                    lambda s, p: rc.raycast_any(s, [0, 0, 1], p)):  # fmt: skip
+            with pytest.raises(rc.InputError):
+                ask(torus, bad)

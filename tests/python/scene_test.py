@@ -6,6 +6,7 @@ import json
 import os
 import subprocess
 
+import brute_force
 import helpers
 import meshes
 import numpy as np
@@ -161,6 +162,157 @@ def test_filters_limits_and_queries_of_a_scene(torus):
     assert hit.body.tolist() == [ids[0], -1] and hit.distance[1] == np.inf
     assert scene.closest_point([40, 0, 0]).body == ids[-1]
     assert scene.overlaps(torus, rc.pose([1.2, 0, 0])).tolist() == [0, 1]
+
+
+@pytest.fixture(scope="module")
+def ring():
+    return rc.Shape(rc.Mesh(*meshes.torus(around=10, across=6)))
+
+
+@pytest.fixture(scope="module")
+def shelf(ring, bracket):
+    """A scene of bodies, their ids, and corners of their triangles."""
+    scene = rc.Scene(threads=2)
+    shapes, poses = [ring, bracket] * 6, helpers.random_poses(12, 5)
+    ids = scene.add(shapes, poses)
+    scene.remove(ids[3])
+    ids[3] = scene.add(shapes[3], poses[3])  # another slot or generation
+    return scene, ids, [brute_force.triangles_of(shape, pose) for shape, pose in zip(shapes, poses)]
+
+
+def meets(a, b):
+    """Surfaces cross, or one lies in the other."""
+    if (a.min(axis=(0, 1)) > b.max(axis=(0, 1))).any() or (b.min(axis=(0, 1)) > a.max(axis=(0, 1))).any():
+        return False
+    return brute_force.meet(a, b) or any(brute_force.winding(x[:1, 0], y)[0] > 0.5 for x, y in ((a, b), (b, a)))
+
+
+def test_overlaps_of_batches_are_those_of_trying_everything(shelf, ring, bracket):
+    scene, ids, placed = shelf
+    links, n = [bracket, ring, bracket], 12
+    poses = helpers.random_poses(n * 3, 6).reshape(n, 3, 4, 4)
+    truth = np.array(
+        [[[meets(brute_force.triangles_of(link, pose), body) for body in placed] for link, pose in zip(links, row)]
+         for row in poses]
+    )  # fmt: skip
+    assert truth.any() and not truth.any(axis=2).all() and not truth.any(axis=(1, 2)).all()
+    by_slot = np.argsort(ids % 2**32)
+
+    found = scene.overlaps(links, poses)
+    assert type(found) is rc.BodyOverlaps and (np.diff(found.item) >= 0).all()
+    expected = [(i, ids[k]) for i, row in enumerate(truth.reshape(-1, len(ids))) for k in by_slot if row[k]]
+    assert list(zip(found.item, found.body)) == expected
+    assert np.array_equal(scene.overlaps_any(links, poses), truth.any(axis=(1, 2)))
+    assert np.array_equal(scene.overlaps_any(links, poses, each=True), truth.any(axis=2))
+    assert np.array_equal(scene.overlaps_any(bracket, poses[:, 0]), truth[:, 0].any(axis=1))
+    assert np.array_equal(scene.overlaps_any(bracket, poses[:, [0, 2]]), truth[:, [0, 2]].any(axis=2))
+    for i in range(n):
+        for forms in (poses[i], poses[i].tolist(), list(poses[i])):
+            any_of = scene.overlaps_any(links, forms)
+            assert type(any_of) is bool and any_of == truth[i].any()
+        assert np.array_equal(scene.overlaps(bracket, poses[i, 0]), ids[by_slot][truth[i, 0][by_slot]])
+        assert np.array_equal(scene.overlaps(bracket, poses[i, 0].tolist()), ids[by_slot][truth[i, 0][by_slot]])
+        one = scene.overlaps_any(links[1], poses[i, 1])
+        assert type(one) is bool and one == truth[i, 1].any()
+
+    wanted = ids[::2]
+    kept = truth[..., ::2]
+    some = scene.overlaps(links, poses, wanted=wanted)
+    assert list(zip(some.item, some.body)) == [pair for pair in expected if pair[1] in wanted]
+    assert np.array_equal(scene.overlaps_any(links, poses, wanted=wanted), kept.any(axis=(1, 2)))
+    assert np.array_equal(scene.overlaps_any(links, poses, each=True, wanted=wanted), kept.any(axis=2))
+    assert not scene.overlaps_any(links, poses, wanted=[]).any() and not len(scene.overlaps(ring, wanted=[]))
+
+
+def test_overlaps_of_nothing(shelf, torus):
+    scene = shelf[0]
+    assert scene.overlaps_any([], None) is False and len(scene.overlaps([]).item) == 0
+    assert scene.overlaps_any([torus], np.empty((0, 1, 4, 4))).shape == (0,)
+    assert scene.overlaps_any(torus, np.empty((0, 4, 4))).shape == (0,)
+    assert rc.Scene().overlaps_any([torus, torus]) is False and rc.Scene().overlaps_any(torus) is False
+
+
+def test_rays_points_and_distances_of_chosen_bodies(shelf):
+    scene, ids, placed = shelf
+    rng = np.random.default_rng(3)
+    origins, directions = rng.uniform(-6, 6, (60, 3)), rng.normal(size=(60, 3))
+    shapes = [scene.shape(i) for i in ids]
+    poses = scene.poses(ids)
+    for wanted in (None, ids, ids[::3], [int(ids[3])], []):
+        counts = np.ones(len(ids), bool) if wanted is None else np.isin(ids, wanted)
+        each = np.array([rc.raycast(s, origins, directions, p).distance for s, p in zip(shapes, poses)])
+        each[~counts] = np.inf
+        hits = scene.raycast(origins, directions, wanted=wanted)
+        assert np.array_equal(hits.distance, each.min(axis=0))
+        hit = np.isfinite(hits.distance)
+        assert hit.any() == bool(counts.sum() > 1) or counts.sum() == 1
+        assert np.array_equal(hits.body[hit], ids[each.argmin(axis=0)][hit]) and (hits.body[~hit] == -1).all()
+        assert np.array_equal(scene.raycast_any(origins, directions, wanted=wanted), hit)
+        assert np.array_equal(scene.raycast_any(origins, directions, 3.0, wanted=wanted), hits.distance <= 3)
+        near = np.array([brute_force.to_triangles(origins[:20], triangles) for triangles in placed])
+        near[~counts] = np.inf
+        closest = scene.closest_point(origins[:20], wanted=wanted)
+        assert closest.distance == pytest.approx(near.min(axis=0), abs=1e-9)
+        assert closest.body.tolist() == (ids[near.argmin(axis=0)].tolist() if counts.any() else [-1] * 20)
+    assert (
+        scene.raycast_any([0, 0, 99], [0, 0, 1]) is False
+        and type(scene.raycast([0, 0, 9], [0, 0, -1])) is rc.OneBodyRayHit
+    )
+    assert scene.raycast_any([[0, 0, 99]] * 2, [0, 0, 1]).tolist() == [False, False]
+
+    for i, k in ((0, 1), (2, 9), (5, 6), (3, 3)):
+        found = scene.distance(int(ids[i]), ids[k])
+        assert type(found) is rc.OneDistance
+        true = 0 if meets(placed[i], placed[k]) or i == k else brute_force.distance(placed[i], placed[k])
+        assert found.distance == pytest.approx(true, abs=1e-9)
+    many = scene.distance(ids[:4, None], ids)
+    assert many.distance.shape == (4, 12) and many.point_b.shape == (4, 12, 3)
+    assert many.distance[2, 9] == scene.distance(ids[2], ids[9]).distance
+    assert np.linalg.norm(many.point_a - many.point_b, axis=-1) == pytest.approx(many.distance, abs=1e-9)
+    limited = scene.distance(ids[:4, None], ids, max=1.0)
+    assert np.array_equal(np.isfinite(limited.distance), many.distance <= 1)
+    assert scene.distance([], []).distance.shape == (0,)
+
+
+@pytest.mark.parametrize(
+    ("ask", "says"),
+    [
+        (lambda s, t: s.overlaps(t, np.diag([2, 2, 2, 1.0])), "poses: not rigid"),
+        (lambda s, t: s.overlaps_any([t, t], np.tile(np.diag([2, 2, 2, 1.0]), (2, 1, 1))), r"poses\[0\]: not rigid"),
+        (lambda s, t: s.overlaps_any([t, t], np.zeros((3, 4, 4)) + np.eye(4)), "do not fit together"),
+        (lambda s, t: s.overlaps_any([t, None], None), r"shapes\[1\]"),
+        (lambda s, t: s.overlaps(t, wanted=[12345]), "12345|not in"),
+        (lambda s, t: s.overlaps_any(t, wanted=[0.5]), "wanted: holds float64, not whole numbers"),
+        (lambda s, t: s.raycast([0, 0, 0], [0, 0, 1], wanted=[-1]), "id is empty"),
+        (lambda s, t: s.raycast_any([0, 0, 0], [0, 0, 0]), "direction"),
+        (lambda s, t: s.raycast_any([[0, 0, 0]] * 2, [[0, 0, 1]] * 3), "fit together"),
+        (lambda s, t: s.closest_point([0, 0, 0], wanted=[777]), "777|not in"),
+        (lambda s, t: s.distance(0, 999), "999|not in"),
+        (lambda s, t: s.distance([0, 1], [0, 1, 2]), "fit together"),
+        (lambda s, t: s.distance(0, 1, max=-1), "max|greatest"),
+        (lambda s, t: s.distance(0.5, 1), "whole numbers"),
+    ],
+)
+def test_bad_questions_to_a_scene_are_told(shelf, torus, ask, says):
+    with pytest.raises(rc.InputError, match=says):
+        ask(shelf[0], torus)
+
+
+def test_one_body_is_moved(torus):
+    scene, ids = helpers.ring_scene(torus)
+    poses = helpers.random_poses(6, 3)
+    for pose, given in zip(poses, (int(ids[2]), ids[2], [ids[2]], 2, np.int32(2), int(ids[2]))):
+        scene.set_poses(given, pose)
+        assert np.array_equal(scene.poses(2), pose)
+    scene.set_poses(2, None)
+    assert np.array_equal(scene.poses(2), np.eye(4))
+    for bad, says in ((np.diag([1.0, 1, 2, 1]), "rigid"), (np.full((4, 4), np.nan), "finite"), (np.eye(3), "rotation")):
+        with pytest.raises(rc.InputError, match=says):
+            scene.set_poses(2, bad)
+    with pytest.raises(rc.InputError):
+        scene.set_poses(99, np.eye(4))
+    assert np.array_equal(scene.poses(2), np.eye(4))
+    assert len(scene.find_contacts()) and 2 in scene.find_contacts().bodies
 
 
 def test_a_recording_is_one_that_the_program_replays(torus, tmp_path):

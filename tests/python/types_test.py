@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PACKAGE = Path(rc.__file__).parent
 MODULES = [rc] + [
     importlib.import_module(f"raycontact.{name}")
-    for name in ("collision", "contacts", "mesh", "poses", "queries", "scene", "shape")
+    for name in ("collision", "contacts", "mesh", "poses", "queries", "samples", "scene", "shape")
 ]
 
 # A line that ends in "# wrong" must be reported, and no other.
@@ -45,6 +45,8 @@ other = Other(np.zeros((3, 3), np.float32), np.zeros((1, 3), np.int32))
 rc.Mesh(3.5)  # wrong
 rc.Mesh(mesh.vertices)  # wrong
 rc.Mesh("part.stl", scale="mm")  # wrong
+rc.Mesh("part.stl", scale=(1, -1, 0.5)), rc.Shape("part.stl", scale=np.ones(3)), rc.Mesh(other, scale=[1, 2, 3])
+rc.load_assembly("part.glb", scale=(1, 1, 1))  # wrong
 
 part = rc.Shape(mesh, repair=False, nesting="solids")
 for made in (rc.Shape("part.stl"), rc.Shape(Path("part.stl")), rc.Shape(other)):
@@ -64,9 +66,56 @@ found["depth"]  # wrong
 rc.collide(part, 3.5)  # wrong
 rc.collide(part, part, None, object())  # wrong
 rc.collide(part, part, threads="all")  # wrong
-assert_type(rc.intersects(part, part), Union[bool, NDArray[np.bool_]])
 assert_type(rc.distance((part, part), part, max=1).point_a, NDArray[np.float64])
 near = rc.closest_point(part, (0, 0, 1), np.eye(4)).distance < 0.5
+for contact in found:
+    print(contact.depth, contact["depth"], contact.bodies)
+
+# A question with one answer, and those that may have many
+Bools = Union[bool, NDArray[np.bool_]]
+Floats = Union[float, NDArray[np.float64]]
+poses: NDArray[np.float64] = rc.pose([[0, 0, 0], [1, 0, 0]])
+points: NDArray[np.float64] = poses[:, :3, 3]
+d: float = rc.distance(part, part).distance
+i: int = rc.distance(part, "part.stl", max=1.0, threads=1).triangle_a
+b: bool = rc.intersects(part, part)
+c: bool = rc.contains(part, np.zeros(3))
+e: bool = rc.contains(part, [0, 0, 1.5]) and rc.raycast_any(part, (0, 0, 1), [0, 0, 1])
+f: float = rc.signed_distance(part, (0.0, 0, 1)).distance + rc.closest_point(part, [0, 0, 1]).distance
+g: float = rc.raycast(part, np.zeros(3), np.ones(3), max=2).distance
+assert_type(rc.distance(part, mesh), rc.OneDistance)
+assert_type(rc.distance(part, part, pose_b=poses), rc.Distance)
+assert_type(rc.distance([part], part).distance, Floats)
+assert_type(rc.intersects(part, part, poses), Bools)
+assert_type(rc.intersects(part, part, pose_b=np.eye(4)), Bools)
+assert_type(rc.intersects((part, part), part), Bools)
+assert_type(rc.contains(part, points), Bools)
+assert_type(rc.contains(part, [[0, 0, 1]]), Bools)
+assert_type(rc.contains(part, np.zeros(3), poses), Bools)
+assert_type(rc.contains(part, np.zeros((2, 3))), Bools)
+assert_type(rc.closest_point(part, points), rc.ClosestPoint)
+assert_type(rc.closest_point(part, np.zeros(3)), rc.OneClosestPoint)
+assert_type(rc.signed_distance(part, points).distance, Floats)
+assert_type(rc.raycast(part, points, [0, 0, 1]), rc.RayHit)
+assert_type(rc.raycast(part, [0, 0, 1], points), rc.RayHit)
+assert_type(rc.raycast(part, [0, 0, 1], [0, 0, 1]), rc.OneRayHit)
+assert_type(rc.raycast_any(part, [[0, 0, 1]], [0, 0, 1]), Bools)
+wrong: float = rc.distance(part, part, pose_b=poses).distance  # wrong
+
+# Poses in other forms
+class Turn:
+    def as_matrix(self) -> NDArray[np.float64]:
+        return np.eye(4)
+
+rc.collide(part, part, Turn(), (np.eye(3), np.zeros(3)))
+rc.intersects(part, part, (Turn(), [0, 0, 1]), pose_b=(poses[:, :3, :3], points))
+rc.Scene().add(part, (Turn(), points))
+rc.pose([0, 0, 1], Turn())
+
+for name, sample in rc.samples().items():
+    assert_type(sample, rc.Mesh)
+rc.box(2), rc.box((1, 2, 3)), rc.heightfield(np.zeros((3, 3)), 0.1, -1), rc.heightfield([[1, 2], [3, 4]], (1, 2), 0)
+rc.box("big")  # wrong
 
 scene = rc.Scene(method="standard", speculative_margin=None)
 one = scene.add(part)
@@ -83,6 +132,18 @@ assert_type(scene.find_contacts([(0, 1)]).touching, rc.Contacts)
 assert_type(scene.poses(), NDArray[np.float64])
 assert_type(scene.stats.depth_max, float)
 scene.raycast([0, 0, 5], [0, 0, -1], max=10).normal.sum()
+assert_type(scene.raycast([0, 0, 5], [0, 0, -1], wanted=many), rc.OneBodyRayHit)
+assert_type(scene.raycast(points, [0, 0, -1]), rc.BodyRayHits)
+assert_type(scene.raycast_any([0, 0, 5], [0, 0, -1]), bool)
+assert_type(scene.raycast_any(points, points), Bools)
+assert_type(scene.closest_point((0, 0, 5)), rc.OneBodyClosestPoint)
+assert_type(scene.closest_point(points, wanted=[0]), rc.BodyClosestPoints)
+assert_type(scene.overlaps(part), NDArray[np.int64])
+assert_type(scene.overlaps([part, part], poses), rc.BodyOverlaps)
+assert_type(scene.overlaps_any(part), bool)
+assert_type(scene.overlaps_any([part, part], poses, wanted=many), Bools)
+assert_type(scene.distance(one, 1), rc.OneDistance)
+assert_type(scene.distance(one, many, max=1), rc.Distance)
 scene.step()  # wrong
 scene.shape("part")  # wrong
 scene.set_filter(one, "walls", 1)  # wrong
@@ -235,7 +296,7 @@ ANNOTATED = {key: thing for key, thing in THINGS.items() if annotations_of(thing
 def test_arrays_are_documented_with_their_shapes(key):
     text = inspect.getdoc(ANNOTATED[key])
     for name, written in annotations_of(ANNOTATED[key]).items():
-        if name != "return" and "ArrayLike" in written:
+        if name != "return" and ("ArrayLike" in written or "PoseLike" in written):
             assert name in text or "Arguments" in text, f"{key} does not say what {name} is"
         if name == "return" and "NDArray" in written and "dict" not in written:
             assert re.search(r"\((n|m|\d|\.\.\.),", text), f"{key} does not say of what shape its answer is"

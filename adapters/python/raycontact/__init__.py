@@ -21,6 +21,10 @@ from .queries import (
     ClosestPoint,
     ContactPatches,
     Distance,
+    OneClosestPoint,
+    OneDistance,
+    OneRayHit,
+    OneSignedDistance,
     RayHit,
     SignedDistance,
     closest_point,
@@ -36,17 +40,28 @@ from .queries import (
     signed_distance,
 )  # fmt: skip
 from .recording import RecordedStep, Recorder, Recording
-from .scene import BodyClosestPoints, BodyRayHits, LostContacts, Scene
-from .shape import Mass, Shape
+from .samples import box, heightfield, samples
+from .scene import (
+    BodyClosestPoints,
+    BodyOverlaps,
+    BodyRayHits,
+    LostContacts,
+    OneBodyClosestPoint,
+    OneBodyRayHit,
+    Scene,
+)  # fmt: skip
+from .shape import Mass, Shape, SheetWarning
 from .show import show
 
 __version__: str = _core.version
 
 __all__ = [
-    "CONTACT_DTYPE", "AssemblyPart", "BodyClosestPoints", "BodyRayHits", "Clash", "Clashes", "ClosestPoint",
-    "CollisionManager", "ContactPatches", "Contacts", "DeviceInfo", "Distance", "FeatureKind", "InputError",
-    "LostContacts", "Mass", "Mesh", "MeshReport", "PairContacts", "RayHit", "RecordedStep", "Recorder", "Recording",
-    "Scene", "Shape", "SignedDistance", "StepStats", "clash", "closest_point", "collide", "common_point",
-    "contact_patches", "contains", "distance", "distance_grid", "intersects", "list_devices", "load_assembly",
-    "nearest_rigid", "pose", "pose_from_quaternion", "raycast", "raycast_any", "show", "signed_distance",
+    "CONTACT_DTYPE", "AssemblyPart", "BodyClosestPoints", "BodyOverlaps", "BodyRayHits", "Clash", "Clashes",
+    "ClosestPoint", "CollisionManager", "ContactPatches", "Contacts", "DeviceInfo", "Distance", "FeatureKind",
+    "InputError", "LostContacts", "Mass", "Mesh", "MeshReport", "OneBodyClosestPoint", "OneBodyRayHit",
+    "OneClosestPoint", "OneDistance", "OneRayHit", "OneSignedDistance", "PairContacts", "RayHit", "RecordedStep",
+    "Recorder", "Recording", "Scene", "Shape", "SheetWarning", "SignedDistance", "StepStats", "box", "clash",
+    "closest_point", "collide", "common_point", "contact_patches", "contains", "distance", "distance_grid",
+    "heightfield", "intersects", "list_devices", "load_assembly", "nearest_rigid", "pose", "pose_from_quaternion",
+    "raycast", "raycast_any", "samples", "show", "signed_distance",
 ]  # fmt: skip

@@ -7,6 +7,7 @@ import argparse
 import csv
 import json
 import sys
+import warnings
 from collections.abc import Callable
 
 import numpy as np
@@ -154,4 +155,5 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 if __name__ == "__main__":
+    warnings.formatwarning = lambda message, *where, **more: f"raycontact: {message}\n"
     sys.exit(main())

@@ -84,7 +84,7 @@ class Clashes(Sequence[Clash]):
         self.faults = faults
         """Parts that could not be checked."""
         self.open = open
-        """Parts that are not closed, so that nothing is inside them."""
+        """Parts without an inside."""
 
     def __getitem__(self, which: Any) -> Any:
         return self._clashes[which]

@@ -8,7 +8,7 @@ docs/python.md says what differs.
 from __future__ import annotations
 
 import weakref
-from collections.abc import Hashable, Iterator
+from collections.abc import Hashable
 from typing import Any, NamedTuple, Optional, TypeVar, cast
 
 import numpy as np
@@ -16,7 +16,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from . import _core
 from ._arrays import as_pose
-from ._boxes import Boxes, Pairs, boxes_of, pairs_within, some_near_pairs
 from ._core import InputError
 from ._shared_shapes import shared_shape
 from .contacts import FeatureKind, PairContacts
@@ -137,10 +136,8 @@ class _Object(NamedTuple):
     """What a name stands for."""
 
     shape: Shape
-    box: NDArray[np.float64]
-    """(2, 3), of the shape."""
     pose: NDArray[np.float64]
-    """(4, 4)."""
+    """(4, 4); where it was when objects were last listed."""
 
 
 class _Objects:
@@ -149,8 +146,9 @@ class _Objects:
     def __init__(self, objects: dict[Hashable, _Object]) -> None:
         self.names = list(objects)
         self.shapes = [item.shape for item in objects.values()]
-        self.poses = np.array([item.pose for item in objects.values()]).reshape(-1, 4, 4)
-        self.boxes = boxes_of(np.array([item.box for item in objects.values()]).reshape(-1, 2, 3), self.poses)
+        poses = np.array([item.pose for item in objects.values()]).reshape(-1, 4, 4)
+        self.placed = _core.PlacedList([shape._core for shape in self.shapes], poses)
+        self.rows = {name: row for row, name in enumerate(objects)}
 
     def by_name(self, i: int, j: int) -> tuple[int, int]:
         """Two rows, i < j, sorted by their names; as they are where names do not compare."""
@@ -159,14 +157,6 @@ class _Objects:
             return (j, i) if other < one else (i, j)
         except TypeError:
             return i, j
-
-    def only(self, rows: NDArray[np.int64]) -> _Objects:
-        """Those of some rows."""
-        some = _Objects.__new__(_Objects)
-        some.names, some.shapes = ([column[row] for row in rows] for column in (self.names, self.shapes))
-        some.poses = self.poses[rows]
-        some.boxes = Boxes(*(ends[rows] for ends in self.boxes))
-        return some
 
 
 class CollisionManager:
@@ -188,8 +178,6 @@ class CollisionManager:
         self._objects: dict[Hashable, _Object] = {}
         self._allowed: set[frozenset[Hashable]] = set()
         self._listed: Optional[_Objects] = None
-        self._placed: Optional[_core.PlacedList] = None
-        self._rows: dict[Hashable, int] = {}
 
     def add_object(self, name: Hashable, mesh: ShapeLike, transform: Optional[ArrayLike] = None) -> Shape:
         """Adds an object, in place of any that has the name. transform: (4, 4); None: the identity.
@@ -197,33 +185,33 @@ class CollisionManager:
         Gives the object's shape; trimesh gives an object of FCL. Raises InputError as the class says; then nothing is
         changed.
         """
-        self._objects[name] = _place(mesh, transform, f"object {name!r}")
-        self._listed = self._placed = None
+        made = _place(mesh, transform, f"object {name!r}")
+        self._forget_list()
+        self._objects[name] = made
         return self._objects[name].shape
 
     def remove_object(self, name: Hashable) -> None:
         """Removes an object. Raises InputError where there is no such name."""
         self._find(name)
+        self._forget_list()
         del self._objects[name]
         self._allowed = {pair for pair in self._allowed if name not in pair}
-        self._listed = self._placed = None
 
     def set_transform(self, name: Hashable, transform: ArrayLike) -> None:
         """Moves an object: (4, 4), in place of the transform it had. Raises InputError as the class says."""
-        found = self._find(name)
-        self._listed = None
-        if self._placed is not None and self._placed.set_pose(self._rows[name], transform):
-            found.pose[:] = transform
-            return
-        found.pose[:] = _rigid(transform, f"object {name!r}")
-        self._placed = None
+        listed = self._listed or self._list()
+        row = listed.rows.get(name)
+        if row is None:
+            self._find(name)
+        elif not listed.placed.set_pose(row, transform):
+            listed.placed.set_pose(row, _rigid(transform, f"object {name!r}"))
 
     def allow_collision(self, name: Hashable, other: Hashable, allowed: bool = True) -> None:
         """Leaves a pair of objects out of `in_collision_internal`, as neighbours of an arm that always touch; False:
         asks it again. trimesh has no such. Raises InputError where there is no such name."""
         self._find(name), self._find(other)
         (self._allowed.add if allowed else self._allowed.discard)(frozenset((name, other)))
-        self._placed = None
+        self._forget_list()
 
     # What these give depends on what is asked for, so to a type checker it is Any, as of trimesh.
 
@@ -240,11 +228,10 @@ class CollisionManager:
         with return_data of it and a list of ContactData, with both of all three. The list has at least one of each pair
         that collides. The mesh's name there is "__external".
         """
-        other = _one_placed(mesh, transform)
-        if not (return_names or return_data):
-            return self._place_all().any(other)
         one, mine = _external(mesh, transform), self._list()
-        i, j = self._place_all().all(other)
+        if not (return_names or return_data):
+            return mine.placed.any(one.placed)
+        i, j = mine.placed.all(one.placed)
         names = {mine.names[k] for k in i.tolist()}
         data = _contacts(mine, one, i, j) if return_data else []
         return _answer(bool(len(i)), return_names, names, return_data, data)
@@ -256,10 +243,10 @@ class CollisionManager:
         return_data of it and a list of ContactData, with both of all three. A pair has its names sorted; names that do
         not compare stand in the order in which they were added.
         """
-        if not (return_names or return_data):
-            return self._place_all().any(None)
         mine = self._list()
-        i, j = self._place_all().all(None)
+        if not (return_names or return_data):
+            return mine.placed.any(None)
+        i, j = mine.placed.all(None)
         i, j = _sorted_by_name(mine, i, j)  # normals lead from the first name to the second
         names = {(mine.names[k], mine.names[m]) for k, m in zip(i.tolist(), j.tolist())}
         data = _contacts(mine, mine, i, j) if return_data else []
@@ -275,8 +262,8 @@ class CollisionManager:
         """
         mine, others = self._list(), _list_of(other_manager)
         if not (return_names or return_data):
-            return self._place_all().any(other_manager._place_all())
-        i, j = self._place_all().all(other_manager._place_all())
+            return mine.placed.any(others.placed)
+        i, j = mine.placed.all(others.placed)
         names = {(mine.names[k], others.names[m]) for k, m in zip(i.tolist(), j.tolist())}
         data = _contacts(mine, others, i, j) if return_data else []
         return _answer(bool(len(i)), return_names, names, return_data, data)
@@ -313,13 +300,12 @@ class CollisionManager:
         if name is None:
             least, pair = _nearest(mine, None)
         else:
-            self._find(name)
-            row = list(self._objects).index(name)
-            others = np.delete(np.arange(len(mine.names)), row)
-            least, pair = _nearest(mine.only(np.array([row])), mine.only(others))
+            own = self._find(name)
+            row = mine.rows[name]
+            one = _Objects({name: own._replace(pose=mine.placed.poses[row])})
+            least, pair = _nearest(one, mine, but=row)
             if pair is not None:
-                other = int(others[pair[1]])
-                pair = min(row, other), max(row, other)
+                pair = min(row, pair[1]), max(row, pair[1])
         if pair is not None:
             pair = mine.by_name(*pair)
         names = None if pair is None else (mine.names[pair[0]], mine.names[pair[1]])
@@ -346,19 +332,19 @@ class CollisionManager:
         except KeyError:
             raise InputError(f"object {name!r}: is not in the manager; add it with add_object") from None
 
-    def _place_all(self) -> _core.PlacedList:
-        if self._placed is None:
-            objects = self._objects.values()
-            poses = np.array([item.pose for item in objects]).reshape(-1, 4, 4)
-            self._placed = _core.PlacedList([item.shape._core for item in objects], poses)
-            self._rows = {name: row for row, name in enumerate(self._objects)}
-            pairs = (sorted(self._rows[name] for name in pair) for pair in self._allowed if len(pair) == 2)
-            self._placed.set_allowed([(i, j) for i, j in pairs])
-        return self._placed
+    def _forget_list(self) -> None:
+        """Before objects come or go."""
+        if self._listed is not None:
+            for item, pose in zip(self._objects.values(), self._listed.placed.poses):
+                item.pose[:] = pose
+        self._listed = None
 
     def _list(self) -> _Objects:
         if self._listed is None:
-            self._listed = _Objects(self._objects)
+            made = _Objects(self._objects)
+            pairs = (sorted(made.rows[name] for name in pair) for pair in self._allowed if len(pair) == 2)
+            made.placed.set_allowed([(i, j) for i, j in pairs])
+            self._listed = made
         return self._listed
 
     def __repr__(self) -> str:
@@ -410,12 +396,7 @@ def _place(mesh: ShapeLike, transform: Optional[ArrayLike], what: str) -> _Objec
         shape = shared_shape(mesh)
     except InputError as error:
         raise InputError(f"{what}: {error}") from None
-    return _Object(shape, shape.box, pose)
-
-
-def _one_placed(mesh: ShapeLike, transform: Optional[ArrayLike]) -> _core.PlacedList:
-    one = _place(mesh, transform, "mesh")
-    return _core.PlacedList([one.shape._core], one.pose[None])
+    return _Object(shape, pose)
 
 
 def _external(mesh: ShapeLike, transform: Optional[ArrayLike]) -> _Objects:
@@ -465,21 +446,12 @@ def _answer(result: Any, wants_names: bool, names: Any, wants_data: bool, data: 
 def _ask(question: Any, a: _Objects, b: _Objects, i: NDArray[np.int64], j: NDArray[np.int64], **words: Any) -> Any:
     """What a query of the package says of pairs of objects."""
     return question(
-        [a.shapes[k] for k in i.tolist()], [b.shapes[k] for k in j.tolist()], a.poses[i], b.poses[j], **words
+        [a.shapes[k] for k in i.tolist()],
+        [b.shapes[k] for k in j.tolist()],
+        a.placed.poses[i],
+        b.placed.poses[j],
+        **words,
     )
-
-
-def _slices(count: int, first: int, most: int) -> Iterator[slice]:
-    """Of a list, ever longer ones."""
-    begin = 0
-    while begin < count:
-        yield slice(begin, min(begin + first, count))
-        begin, first = begin + first, min(2 * first, most)
-
-
-def _candidates(a: _Objects, b: Optional[_Objects], gap: float) -> Iterator[Pairs]:
-    """Pairs of a and b, or within a, whose boxes are at most `gap` metres apart."""
-    return pairs_within(gap, a.boxes, None if b is None else b.boxes)
 
 
 def _sorted_by_name(
@@ -492,7 +464,8 @@ def _sorted_by_name(
 def _contacts(a: _Objects, b: _Objects, i: NDArray[np.int64], j: NDArray[np.int64]) -> list[ContactData]:
     """Of pairs that collide, in their order: each has at least one."""
     made: list[ContactData] = []
-    for part in _slices(len(i), _MOST_ASKED, _MOST_ASKED):
+    for begin in range(0, len(i), _MOST_ASKED):
+        part = slice(begin, begin + _MOST_ASKED)
         made += _contacts_of(a, b, i[part], j[part])
     return made
 
@@ -564,38 +537,17 @@ def _surface(
     objects: _Objects, rows: NDArray[np.int64], triangles: NDArray[np.int64], points: NDArray[np.float64]
 ) -> NDArray[np.int64]:
     """Triangles of a distance; the nearest one for a mesh that has the whole other one inside."""
-    triangles = triangles.copy()
+    triangles, poses = triangles.copy(), objects.placed.poses
     for k in np.flatnonzero(triangles < 0):
-        triangles[k] = closest_point(objects.shapes[rows[k]], points[k], objects.poses[rows[k]]).triangle
+        triangles[k] = closest_point(objects.shapes[rows[k]], points[k], poses[rows[k]]).triangle
     return triangles
 
 
-def _nearest(a: _Objects, b: Optional[_Objects]) -> tuple[float, Optional[tuple[int, int]]]:
-    """The least distance of a and b, or within a, and the pair that has it; inf and None without a pair."""
-    best: tuple[float, Optional[tuple[int, int]]] = np.inf, None
-    other = a if b is None else b
-
-    def look(pairs: Pairs) -> None:
-        # Nearest boxes first, a few at once: what is found spares most of the others.
-        nonlocal best
-        order = np.argsort(pairs.gap, kind="stable")
-        gaps = pairs.gap[order]
-        for part in _slices(len(order), 4, 1024):
-            part = slice(part.start, min(part.stop, int(np.searchsorted(gaps, best[0], "right"))))
-            if best[0] == 0 or part.stop <= part.start:
-                return
-            i, j = pairs.a[order[part]], pairs.b[order[part]]
-            found = _ask(distance, a, other, i, j, max=best[0]).distance
-            k = int(np.argmin(found))
-            if found[k] < best[0]:
-                best = float(found[k]), (int(i[k]), int(j[k]))
-
-    look(some_near_pairs(a.boxes, None if b is None else b.boxes))
-    for pairs in _candidates(a, b, best[0]):
-        if best[0] == 0:
-            break
-        look(pairs)
-    return best
+def _nearest(a: _Objects, b: Optional[_Objects], but: int = -1) -> tuple[float, Optional[tuple[int, int]]]:
+    """The least distance of a and b but its row `but`, or within a, and the pair that has it; inf and None without a
+    pair."""
+    least, i, j = a.placed.nearest(None if b is None else b.placed, but)
+    return (least, (i, j)) if least < np.inf else (np.inf, None)
 
 
 def _distance_data(a: _Objects, b: _Objects, least: float, pair: Optional[tuple[int, int]]) -> Optional[DistanceData]:

@@ -31,6 +31,8 @@ def _type_of_contacts() -> np.dtype[np.void]:
 CONTACT_DTYPE = _type_of_contacts()
 """A contact as the library holds it: the columns of Contacts by name, but for `key` and `slots`."""
 
+_RECORDS = np.dtype((np.record, CONTACT_DTYPE))
+
 
 class FeatureKind(IntEnum):
     """What is in contact.
@@ -57,7 +59,8 @@ class Contacts:
     (`np.ascontiguousarray`). They are read-only, which not all that take arrays by DLPack know: give them a `.copy()`
     (`torch.from_dlpack(contacts.depth.copy())`).
 
-    `contacts[mask]` and `contacts[i:j]` choose some; iterating gives a record of CONTACT_DTYPE for each contact.
+    `contacts[mask]` and `contacts[i:j]` choose some; iterating gives a record of CONTACT_DTYPE for each contact,
+    without a copy: `for c in contacts: c.depth`, or `c["depth"]`.
 
     data: all of it as one structured array, (n,) of CONTACT_DTYPE.
     """
@@ -182,8 +185,8 @@ class Contacts:
         chosen = self.data[which]
         return type(self)(chosen if chosen.ndim else chosen.reshape(1))
 
-    def __iter__(self) -> Iterator[np.void]:
-        return iter(self.data)
+    def __iter__(self) -> Iterator[np.record]:
+        return iter(self.data.view(_RECORDS))
 
     def __repr__(self) -> str:
         depth = f", deepest {self.depth.max():.6g} m" if len(self) else ""

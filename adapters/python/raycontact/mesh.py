@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._arrays import as_length, as_numbers, as_scale
+from ._arrays import ScaleLike, as_factors, as_length, as_numbers, as_scale
 from ._core import InputError, MeshReport
 
 
@@ -35,14 +35,16 @@ class Mesh:
     arrays: (n, 3) numbers, metres, body frame; (m, 3) whole numbers from 0, counter-clockwise seen from outside.
     `Mesh(mesh)` takes an object with `vertices` and `faces`, such as a `trimesh.Trimesh`. What is given is copied.
 
-    scale: what coordinates are multiplied by; 0.001 for a file in millimetres. 3MF says its unit: its are metres.
+    scale: what coordinates are multiplied by; 0.001 for a file in millimetres. 3MF says its unit: its are metres. Three
+        factors are those of x, y and z, as URDF has them. Negative ones mirror: triangles are turned over where their
+        number is odd, so that outside stays outside.
     weld: metres, after scale: vertices that are nearer to each other are joined, as those of a file whose corners
         differ in their last digits. None moves farther; `repairs` says how many did.
     name: for messages; that of the file where one is read.
 
     Raises InputError (a ValueError) naming the file or the element to blame: a file that is missing, unreadable or
     damaged, no triangles, a vertex that does not exist, a coordinate that is not finite, arrays of other shapes, a
-    weld not from 1e-12 to 1e9, or below the last digit of the largest coordinate.
+    scale that is 0 or not finite, a weld not from 1e-12 to 1e9, or below the last digit of the largest coordinate.
     """
 
     @overload
@@ -51,7 +53,7 @@ class Mesh:
         source: MeshLike,
         triangles: None = None,
         *,
-        scale: float = 1.0,
+        scale: ScaleLike = 1.0,
         weld: Optional[float] = None,
         name: Optional[str] = None,
     ) -> None: ...
@@ -62,7 +64,7 @@ class Mesh:
         source: ArrayLike,
         triangles: ArrayLike,
         *,
-        scale: float = 1.0,
+        scale: ScaleLike = 1.0,
         weld: Optional[float] = None,
         name: Optional[str] = None,
     ) -> None: ...
@@ -72,7 +74,7 @@ class Mesh:
         source: Union[MeshLike, ArrayLike],
         triangles: Optional[ArrayLike] = None,
         *,
-        scale: float = 1.0,
+        scale: ScaleLike = 1.0,
         weld: Optional[float] = None,
         name: Optional[str] = None,
     ) -> None:
@@ -127,20 +129,21 @@ MeshLike = Union[Mesh, str, os.PathLike[str], HasFaces]
 
 
 def _unpickled(vertices: NDArray[np.float64], triangles: NDArray[np.uint32], name: str, repairs: list[str]) -> Mesh:
-    return Mesh._wrap(_make(vertices, triangles, 1.0, name, repairs))
+    return Mesh._wrap(_make(vertices, triangles, None, name, repairs))
 
 
 def _core_of(
-    source: Union[MeshLike, ArrayLike], triangles: Optional[ArrayLike], scale: float, name: Optional[str]
+    source: Union[MeshLike, ArrayLike], triangles: Optional[ArrayLike], scale: ScaleLike, name: Optional[str]
 ) -> _core.Mesh:
     given: Any = source
+    by = as_factors(scale)
     if isinstance(given, (str, os.PathLike)):
         if triangles is not None:
             raise InputError("Mesh: give a file, or vertices and triangles")
         core = _core.load_mesh(os.fspath(given))
-        return core if scale == 1.0 and name is None else _scaled(core, scale, name)
+        return core if by is None and name is None else _scaled(core, by, name)
     if isinstance(given, Mesh) and triangles is None:
-        return _scaled(given._core, scale, name)
+        return given._core if by is None and name is None else _scaled(given._core, by, name)
     if triangles is None:
         if not (hasattr(given, "vertices") and hasattr(given, "faces")):
             raise InputError(
@@ -148,7 +151,7 @@ def _core_of(
                 "give a file, vertices and triangles, or such an object"
             )
         given, triangles = given.vertices, given.faces
-    return _make(given, triangles, scale, name or "")
+    return _make(given, triangles, by, name or "")
 
 
 def _welded(core: _core.Mesh, weld: Optional[float]) -> _core.Mesh:
@@ -156,7 +159,11 @@ def _welded(core: _core.Mesh, weld: Optional[float]) -> _core.Mesh:
 
 
 def _make(
-    vertices: ArrayLike, triangles: ArrayLike, scale: float, name: str, repairs: Iterable[str] = ()
+    vertices: ArrayLike,
+    triangles: ArrayLike,
+    by: Optional[NDArray[np.float64]],
+    name: str,
+    repairs: Iterable[str] = (),
 ) -> _core.Mesh:
     points = as_numbers(vertices, "vertices")
     corners = as_numbers(triangles, "triangles", "iu")
@@ -168,14 +175,15 @@ def _make(
         row = int(np.argmax(((corners < 0) | (corners > 0xFFFFFFFF)).any(axis=1)))
         raise InputError(f"triangle {row}: has the vertex {corners[row].tolist()}; indices begin at 0")
     points = np.ascontiguousarray(points, np.float64)
-    by = as_scale(scale)
-    if by != 1.0:
+    if by is not None:
         points = points * by
+        if np.prod(np.sign(by)) < 0:  # mirrored
+            corners = corners[:, ::-1]
     return _core.make_mesh(points, np.ascontiguousarray(corners, np.uint32), name, list(repairs))
 
 
-def _scaled(core: _core.Mesh, scale: float, name: Optional[str]) -> _core.Mesh:
-    return _make(core.vertices, core.triangles, scale, core.name if name is None else name, core.repairs)
+def _scaled(core: _core.Mesh, by: Optional[NDArray[np.float64]], name: Optional[str]) -> _core.Mesh:
+    return _make(core.vertices, core.triangles, by, core.name if name is None else name, core.repairs)
 
 
 class AssemblyPart(NamedTuple):
@@ -220,11 +228,12 @@ def scaled_parts(
 ) -> list[AssemblyPart]:
     """Of parts as the C++ half gives them; those that share a mesh share it afterwards."""
     by = as_scale(scale)
+    factors = as_factors(by)
     kept, shared = list(parts), {}  # the list keeps each core, so their ids stay theirs
     made = []
     for name, core, poses in kept:
         if id(core) not in shared:
-            shared[id(core)] = Mesh._wrap(_welded(core if by == 1.0 else _scaled(core, by, None), weld))
+            shared[id(core)] = Mesh._wrap(_welded(core if factors is None else _scaled(core, factors, None), weld))
         pose = poses[0]
         pose[:3, 3] *= by
         made.append(AssemblyPart(name, shared[id(core)], pose))

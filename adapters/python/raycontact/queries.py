@@ -5,23 +5,27 @@ Each takes one item or many: shapes one or a list, poses (4, 4) or (..., 4, 4), 
 together as NumPy broadcasts: what is there once counts for all, and l shapes with poses (n, l, 4, 4) have answers (n,
 l). Of many, answers are arrays over the items, found by several threads; Ctrl-C ends them. Where docstrings say (n,),
 the batch may have more dimensions. Poses are rigid matrices from the body's frame to the world, None the identity;
-lengths are metres. Triangles from `report.file_triangles` on span holes: the mesh does not have them. Where an answer
-is called exact, it is that for the mesh's own double coordinates, rotated and moved, without a tolerance.
+lengths are metres. A single question has a `One...` of its answer, whose numbers are plain floats and ints, for type
+checkers, too. Triangles from `report.file_triangles` on span holes: the mesh does not have them. Where an answer is
+called exact, it is that for the mesh's own double coordinates, rotated and moved, without a tolerance.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple, Optional, Union
+from typing import NamedTuple, Optional, Union, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._arrays import Batch, as_count, as_length, as_points, as_poses
+from ._arrays import Batch, ManyPoints, OnePoint, PoseLike, as_count, as_length, as_points, as_poses
 from ._core import InputError
+from ._settings import as_settings
 from .contacts import PairContacts
-from .scene import as_settings
-from .shape import Shape, ShapeLike, Shapes, as_shape, as_shapes
+from .shape import Shape, ShapeLike, Shapes, as_shape, as_shapes, as_solid
+
+_PLAIN = (np.ndarray, list, tuple)
+"""Of which the C++ half takes a point."""
 
 
 class Distance(NamedTuple):
@@ -41,6 +45,22 @@ class Distance(NamedTuple):
     point_b: NDArray[np.float64]
     triangle_a: Union[int, NDArray[np.int64]]
     triangle_b: Union[int, NDArray[np.int64]]
+
+
+class OneDistance(Distance):
+    """A `Distance` of a single question.
+
+    distance: a float, metres.
+    point_a: (3,) float64.
+    point_b: (3,) float64.
+    triangle_a: an int.
+    triangle_b: an int.
+    """
+
+    __slots__ = ()
+    distance: float
+    triangle_a: int
+    triangle_b: int
 
 
 class ContactPatches(NamedTuple):
@@ -75,6 +95,19 @@ class ClosestPoint(NamedTuple):
     triangle: Union[int, NDArray[np.int64]]
 
 
+class OneClosestPoint(ClosestPoint):
+    """A `ClosestPoint` of a single question.
+
+    distance: a float, metres.
+    point: (3,) float64.
+    triangle: an int.
+    """
+
+    __slots__ = ()
+    distance: float
+    triangle: int
+
+
 class SignedDistance(NamedTuple):
     """How far a point is from a mesh, on which side, and what of the mesh is nearest.
 
@@ -89,6 +122,20 @@ class SignedDistance(NamedTuple):
     point: NDArray[np.float64]
     triangle: Union[int, NDArray[np.int64]]
     gradient: NDArray[np.float64]
+
+
+class OneSignedDistance(SignedDistance):
+    """A `SignedDistance` of a single question.
+
+    distance: a float, metres.
+    point: (3,) float64.
+    triangle: an int.
+    gradient: (3,) float64.
+    """
+
+    __slots__ = ()
+    distance: float
+    triangle: int
 
 
 class RayHit(NamedTuple):
@@ -106,14 +153,34 @@ class RayHit(NamedTuple):
     triangle: Union[int, NDArray[np.int64]]
 
 
+class OneRayHit(RayHit):
+    """A `RayHit` of a single question.
+
+    distance: a float, metres.
+    point: (3,) float64.
+    normal: (3,) float64.
+    triangle: an int.
+    """
+
+    __slots__ = ()
+    distance: float
+    triangle: int
+
+
 class _Pairs(Batch):
     """Pairs of placed shapes for the C++ half."""
 
     def __init__(
-        self, a: Shapes, b: Shapes, pose_a: Optional[ArrayLike], pose_b: Optional[ArrayLike], threads: int
+        self,
+        a: Shapes,
+        b: Shapes,
+        pose_a: Optional[PoseLike],
+        pose_b: Optional[PoseLike],
+        threads: int,
+        asked: Optional[str] = None,
     ) -> None:
-        shapes_a, lead_a = as_shapes(a, "a")
-        shapes_b, lead_b = as_shapes(b, "b")
+        shapes_a, lead_a = as_shapes(a, "a", asked)
+        shapes_b, lead_b = as_shapes(b, "b", asked)
         poses_a, poses_b = as_poses(pose_a, "pose_a", rigid=True), as_poses(pose_b, "pose_b", rigid=True)
         super().__init__(a=lead_a, b=lead_b, pose_a=poses_a.shape[:-2], pose_b=poses_b.shape[:-2])
         self.core = _core.PlacedPairs(
@@ -131,7 +198,7 @@ class _Pairs(Batch):
 class _Placed(Batch):
     """Points or rays at one shape that has poses."""
 
-    def __init__(self, pose: Optional[ArrayLike], **vectors: ArrayLike) -> None:
+    def __init__(self, pose: Optional[PoseLike], **vectors: ArrayLike) -> None:
         matrices = as_poses(pose, "pose", rigid=True)
         lists = {name: as_points(value, name) for name, value in vectors.items()}
         super().__init__(**{name: value.shape[:-1] for name, value in lists.items()}, pose=matrices.shape[:-2])
@@ -142,8 +209,8 @@ class _Placed(Batch):
 def collide(
     a: Shapes,
     b: Shapes,
-    pose_a: Optional[ArrayLike] = None,
-    pose_b: Optional[ArrayLike] = None,
+    pose_a: Optional[PoseLike] = None,
+    pose_b: Optional[PoseLike] = None,
     *,
     direction: str = "reprojected",
     features: str = "edges",
@@ -157,8 +224,9 @@ def collide(
     many poses one after the other, keep a Scene.
 
     a, b: a shape, or a list; anything that `Shape` takes alone is made one.
-    pose_a, pose_b: (4, 4) or (..., 4, 4), rigid, from the body's frame to the world, metres; None is the identity. a,
-        b, pose_a and pose_b fit together as NumPy broadcasts; `contacts.pair` counts through the batch, last dimension
+    pose_a, pose_b: (4, 4) or (..., 4, 4), rigid, from the body's frame to the world, metres; None is the identity. Or
+        (R, t), (..., 3, 3) or SciPy's Rotation and (..., 3); or what has `as_matrix`, as SciPy's RigidTransform. a, b,
+        pose_a and pose_b fit together as NumPy broadcasts; `contacts.pair` counts through the batch, last dimension
         first (`np.unravel_index`).
     direction, features, max_contacts_per_pair, devices: as of Scene.
     threads: 0 is one for each core; no bit depends on it.
@@ -178,11 +246,26 @@ def collide(
     return PairContacts._from_bytes(found)
 
 
+@overload
+def intersects(a: ShapeLike, b: ShapeLike, pose_a: None = None, pose_b: None = None, *, threads: int = 0) -> bool: ...
+
+
+@overload
 def intersects(
     a: Shapes,
     b: Shapes,
-    pose_a: Optional[ArrayLike] = None,
-    pose_b: Optional[ArrayLike] = None,
+    pose_a: Optional[PoseLike] = None,
+    pose_b: Optional[PoseLike] = None,
+    *,
+    threads: int = 0,
+) -> Union[bool, NDArray[np.bool_]]: ...
+
+
+def intersects(
+    a: Shapes,
+    b: Shapes,
+    pose_a: Optional[PoseLike] = None,
+    pose_b: Optional[PoseLike] = None,
     *,
     threads: int = 0,
 ) -> Union[bool, NDArray[np.bool_]]:
@@ -203,8 +286,8 @@ def intersects(
 def common_point(
     a: Shapes,
     b: Shapes,
-    pose_a: Optional[ArrayLike] = None,
-    pose_b: Optional[ArrayLike] = None,
+    pose_a: Optional[PoseLike] = None,
+    pose_b: Optional[PoseLike] = None,
     *,
     threads: int = 0,
 ) -> NDArray[np.float64]:
@@ -217,19 +300,37 @@ def common_point(
     return found
 
 
+@overload
+def distance(
+    a: ShapeLike, b: ShapeLike, pose_a: None = None, pose_b: None = None, *, max: float = np.inf, threads: int = 0
+) -> OneDistance: ...
+
+
+@overload
 def distance(
     a: Shapes,
     b: Shapes,
-    pose_a: Optional[ArrayLike] = None,
-    pose_b: Optional[ArrayLike] = None,
+    pose_a: Optional[PoseLike] = None,
+    pose_b: Optional[PoseLike] = None,
+    *,
+    max: float = np.inf,
+    threads: int = 0,
+) -> Distance: ...
+
+
+def distance(
+    a: Shapes,
+    b: Shapes,
+    pose_a: Optional[PoseLike] = None,
+    pose_b: Optional[PoseLike] = None,
     *,
     max: float = np.inf,
     threads: int = 0,
 ) -> Distance:
     """The least distance of two surfaces, and where it is; 0 where they intersect or one lies inside the other.
 
-    Whether it is 0 is decided exactly; else it is right to some 1e-15 of size and distance from the origin, between
-    edges parallel to some 1e-8 to 1e-8 of their length.
+    Warns of a mesh without an inside (SheetWarning). Whether it is 0 is decided exactly; else it is right to some 1e-15
+    of size and distance from the origin, between edges parallel to some 1e-8 to 1e-8 of their length.
 
     Arguments and errors are those of `collide`, and max: metres, beyond which it is not looked for; a small one saves
     work. One that is negative or NaN raises InputError.
@@ -237,16 +338,18 @@ def distance(
     if type(a) is Shape and type(b) is Shape and type(max) is float and threads == 0:
         one = _core.one_distance(a._core, pose_a, b._core, pose_b, max)
         if one is not None:
-            return Distance(*one)
-    pairs = _Pairs(a, b, pose_a, pose_b, threads)
-    return Distance(*pairs.answers(_core.distances(pairs.core, as_length(max, "max"))))
+            if a._untold or b._untold:
+                as_solid(a, "distance"), as_solid(b, "distance")
+            return OneDistance(*one)
+    pairs = _Pairs(a, b, pose_a, pose_b, threads, "distance")
+    return pairs.answer(OneDistance, Distance, _core.distances(pairs.core, as_length(max, "max")))
 
 
 def contact_patches(
     a: Shapes,
     b: Shapes,
-    pose_a: Optional[ArrayLike] = None,
-    pose_b: Optional[ArrayLike] = None,
+    pose_a: Optional[PoseLike] = None,
+    pose_b: Optional[PoseLike] = None,
     *,
     threads: int = 0,
 ) -> ContactPatches:
@@ -261,23 +364,42 @@ def contact_patches(
     return ContactPatches(*(np.asarray(column) for column in _core.contact_patches(pairs.core)))
 
 
+@overload
 def closest_point(
-    shape: ShapeLike, points: ArrayLike, pose: Optional[ArrayLike] = None, *, max: float = np.inf, threads: int = 0
+    shape: ShapeLike, points: ManyPoints, pose: Optional[PoseLike] = None, *, max: float = np.inf, threads: int = 0
+) -> ClosestPoint: ...
+
+
+@overload
+def closest_point(
+    shape: ShapeLike, points: OnePoint, pose: None = None, *, max: float = np.inf, threads: int = 0
+) -> OneClosestPoint: ...
+
+
+@overload
+def closest_point(
+    shape: ShapeLike, points: ArrayLike, pose: Optional[PoseLike] = None, *, max: float = np.inf, threads: int = 0
+) -> ClosestPoint: ...
+
+
+def closest_point(
+    shape: ShapeLike, points: ArrayLike, pose: Optional[PoseLike] = None, *, max: float = np.inf, threads: int = 0
 ) -> ClosestPoint:
     """The point of a mesh's surface that is nearest to each point, if it is within `max` metres.
 
     In double: right to some 1e-15 of the mesh's size and its distance from the origins.
 
     points: (3,) or (n, 3), metres, world frame.
-    pose: (4, 4) or (n, 4, 4), rigid, from the mesh's frame to the world, metres; None is the identity.
+    pose: (4, 4) or (n, 4, 4), or as of `collide`, rigid, from the mesh's frame to the world, metres; None is the
+        identity.
     threads: 0 is one for each core; no bit depends on it.
     Raises InputError for a point that is not finite, a pose that is not finite and rigid to 1e-4, a `max` that is
     negative or NaN, and where numbers of points and poses differ; each may be there once for all.
     """
-    if type(shape) is Shape and type(points) is np.ndarray and type(max) is float and threads == 0:
+    if type(shape) is Shape and type(points) in _PLAIN and type(max) is float and threads == 0:
         one = _core.one_closest_point(shape._core, pose, points, max)
         if one is not None:
-            return ClosestPoint(*one)
+            return OneClosestPoint(*one)
     placed = _Placed(pose, points=points)
     found = _core.closest_points(
         as_shape(shape)._core,
@@ -286,21 +408,47 @@ def closest_point(
         as_length(max, "max"),
         as_count(threads, "threads"),
     )
-    return ClosestPoint(*placed.answers(found))
+    return placed.answer(OneClosestPoint, ClosestPoint, found)
+
+
+@overload
+def signed_distance(
+    shape: ShapeLike, points: ManyPoints, pose: Optional[PoseLike] = None, *, threads: int = 0
+) -> SignedDistance: ...
+
+
+@overload
+def signed_distance(
+    shape: ShapeLike, points: OnePoint, pose: None = None, *, threads: int = 0
+) -> OneSignedDistance: ...
+
+
+@overload
+def signed_distance(
+    shape: ShapeLike, points: ArrayLike, pose: Optional[PoseLike] = None, *, threads: int = 0
+) -> SignedDistance: ...
 
 
 def signed_distance(
-    shape: ShapeLike, points: ArrayLike, pose: Optional[ArrayLike] = None, *, threads: int = 0
+    shape: ShapeLike, points: ArrayLike, pose: Optional[PoseLike] = None, *, threads: int = 0
 ) -> SignedDistance:
     """How far each point is from a mesh: above 0 outside, below 0 inside; never below 0 of a mesh without an inside.
 
-    Which side is decided exactly, value and point are as right as those of `closest_point`. Points that lie near each
-    other share work, in whatever order they come. Arguments and errors are those of `closest_point`.
+    Warns of such a mesh (SheetWarning). Which side is decided exactly, value and point are as right as those of
+    `closest_point`. Points that lie near each other share work, in whatever order they come. Arguments and errors are
+    those of `closest_point`.
     """
+    if type(shape) is Shape and type(points) in _PLAIN and threads == 0:
+        one = _core.one_signed_distance(shape._core, pose, points)
+        if one is not None:
+            if shape._untold:
+                as_solid(shape, "signed_distance")
+            return OneSignedDistance(*one)
     placed = _Placed(pose, points=points)
     places = placed.vectors["points"]
-    found = _core.signed_distances(as_shape(shape)._core, placed.poses, places, as_count(threads, "threads"))
-    return SignedDistance(*placed.answers(found))
+    made = as_solid(shape, "signed_distance")
+    found = _core.signed_distances(made._core, placed.poses, places, as_count(threads, "threads"))
+    return placed.answer(OneSignedDistance, SignedDistance, found)
 
 
 def distance_grid(
@@ -328,11 +476,59 @@ def distance_grid(
     return np.asarray(signed_distance(made, points, threads=threads).distance)
 
 
+@overload
+def raycast(
+    shape: ShapeLike,
+    origins: ManyPoints,
+    directions: ArrayLike,
+    pose: Optional[PoseLike] = None,
+    *,
+    max: float = np.inf,
+    threads: int = 0,
+) -> RayHit: ...
+
+
+@overload
+def raycast(
+    shape: ShapeLike,
+    origins: ArrayLike,
+    directions: ManyPoints,
+    pose: Optional[PoseLike] = None,
+    *,
+    max: float = np.inf,
+    threads: int = 0,
+) -> RayHit: ...
+
+
+@overload
+def raycast(
+    shape: ShapeLike,
+    origins: OnePoint,
+    directions: OnePoint,
+    pose: None = None,
+    *,
+    max: float = np.inf,
+    threads: int = 0,
+) -> OneRayHit: ...
+
+
+@overload
 def raycast(
     shape: ShapeLike,
     origins: ArrayLike,
     directions: ArrayLike,
-    pose: Optional[ArrayLike] = None,
+    pose: Optional[PoseLike] = None,
+    *,
+    max: float = np.inf,
+    threads: int = 0,
+) -> RayHit: ...
+
+
+def raycast(
+    shape: ShapeLike,
+    origins: ArrayLike,
+    directions: ArrayLike,
+    pose: Optional[PoseLike] = None,
     *,
     max: float = np.inf,
     threads: int = 0,
@@ -345,19 +541,71 @@ def raycast(
     pose, threads: as of `closest_point`.
     Raises InputError for a direction that is zero or not finite, and as `closest_point` does.
     """
+    if type(shape) is Shape and type(origins) in _PLAIN and type(max) is float and threads == 0:
+        one = _core.one_raycast(shape._core, pose, origins, directions, max)
+        if one is not None:
+            return OneRayHit(*one)
     rays = _Placed(pose, origins=origins, directions=directions)
     starts, along = rays.vectors["origins"], rays.vectors["directions"]
     found = _core.ray_hits(
         as_shape(shape)._core, rays.poses, starts, along, as_length(max, "max"), as_count(threads, "threads")
     )
-    return RayHit(*rays.answers(found))
+    return rays.answer(OneRayHit, RayHit, found)
+
+
+@overload
+def raycast_any(
+    shape: ShapeLike,
+    origins: ManyPoints,
+    directions: ArrayLike,
+    pose: Optional[PoseLike] = None,
+    *,
+    max: float = np.inf,
+    threads: int = 0,
+) -> Union[bool, NDArray[np.bool_]]: ...
+
+
+@overload
+def raycast_any(
+    shape: ShapeLike,
+    origins: ArrayLike,
+    directions: ManyPoints,
+    pose: Optional[PoseLike] = None,
+    *,
+    max: float = np.inf,
+    threads: int = 0,
+) -> Union[bool, NDArray[np.bool_]]: ...
+
+
+@overload
+def raycast_any(
+    shape: ShapeLike,
+    origins: OnePoint,
+    directions: OnePoint,
+    pose: None = None,
+    *,
+    max: float = np.inf,
+    threads: int = 0,
+) -> bool: ...
+
+
+@overload
+def raycast_any(
+    shape: ShapeLike,
+    origins: ArrayLike,
+    directions: ArrayLike,
+    pose: Optional[PoseLike] = None,
+    *,
+    max: float = np.inf,
+    threads: int = 0,
+) -> Union[bool, NDArray[np.bool_]]: ...
 
 
 def raycast_any(
     shape: ShapeLike,
     origins: ArrayLike,
     directions: ArrayLike,
-    pose: Optional[ArrayLike] = None,
+    pose: Optional[PoseLike] = None,
     *,
     max: float = np.inf,
     threads: int = 0,
@@ -366,6 +614,10 @@ def raycast_any(
 
     Arguments and errors are those of `raycast`. Gives a bool, or (n,) bool for lists.
     """
+    if type(shape) is Shape and type(origins) in _PLAIN and type(max) is float and threads == 0:
+        one = _core.one_raycast_any(shape._core, pose, origins, directions, max)
+        if one is not None:
+            return one
     rays = _Placed(pose, origins=origins, directions=directions)
     starts, along = rays.vectors["origins"], rays.vectors["directions"]
     met = _core.rays_meet(
@@ -375,26 +627,46 @@ def raycast_any(
     return found
 
 
+@overload
 def contains(
-    shape: ShapeLike, points: ArrayLike, pose: Optional[ArrayLike] = None, *, threads: int = 0
+    shape: ShapeLike, points: ManyPoints, pose: Optional[PoseLike] = None, *, threads: int = 0
+) -> Union[bool, NDArray[np.bool_]]: ...
+
+
+@overload
+def contains(shape: ShapeLike, points: OnePoint, pose: None = None, *, threads: int = 0) -> bool: ...
+
+
+@overload
+def contains(
+    shape: ShapeLike, points: ArrayLike, pose: Optional[PoseLike] = None, *, threads: int = 0
+) -> Union[bool, NDArray[np.bool_]]: ...
+
+
+def contains(
+    shape: ShapeLike, points: ArrayLike, pose: Optional[PoseLike] = None, *, threads: int = 0
 ) -> Union[bool, NDArray[np.bool_]]:
-    """Whether each point lies in a mesh that is closed and wound alike everywhere, or on its surface; False for others.
+    """Whether each point lies in a mesh that is closed and wound alike everywhere, or on its surface; False for others,
+    of which it warns (SheetWarning).
 
     Exact. Arguments and errors are those of `closest_point`. Gives a bool, or (n,) bool for lists.
     """
-    if type(shape) is Shape and type(points) is np.ndarray and threads == 0:
+    if type(shape) is Shape and type(points) in _PLAIN and threads == 0:
         one = _core.one_contains(shape._core, pose, points)
         if one is not None:
+            if shape._untold:
+                as_solid(shape, "contains")
             return one
     placed = _Placed(pose, points=points)
     places = placed.vectors["points"]
-    inside = _core.contains(as_shape(shape)._core, placed.poses, places, as_count(threads, "threads"))
+    made = as_solid(shape, "contains")
+    inside = _core.contains(made._core, placed.poses, places, as_count(threads, "threads"))
     (found,) = placed.answers((inside.view(np.bool_),))
     return found
 
 
 __all__ = [
-    "ClosestPoint", "ContactPatches", "Distance", "RayHit", "SignedDistance", "closest_point", "collide",
-    "common_point", "contact_patches", "contains", "distance", "distance_grid", "intersects", "raycast", "raycast_any",
-    "signed_distance",
+    "ClosestPoint", "ContactPatches", "Distance", "OneClosestPoint", "OneDistance", "OneRayHit", "OneSignedDistance",
+    "RayHit", "SignedDistance", "closest_point", "collide", "common_point", "contact_patches", "contains", "distance",
+    "distance_grid", "intersects", "raycast", "raycast_any", "signed_distance",
 ]  # fmt: skip

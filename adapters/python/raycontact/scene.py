@@ -9,40 +9,29 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._arrays import Batch, as_count, as_id, as_ids, as_length, as_pairs, as_points, as_pose, as_poses
+from ._arrays import (
+    Batch,
+    ManyPoints,
+    OnePoint,
+    PoseLike,
+    as_count,
+    as_id,
+    as_id_array,
+    as_ids,
+    as_length,
+    as_pairs,
+    as_points,
+    as_poses,
+)  # fmt: skip
 from ._core import InputError, StepStats
 from ._memory import as_column
+from ._settings import as_settings
 from .contacts import Contacts
-from .shape import Shape, ShapeLike, Shapes, as_shape, as_shapes
+from .queries import Distance, OneDistance
+from .shape import Shape, ShapeLike, Shapes, as_shapes
 
 _Id = Union[int, np.integer[Any]]
 """Of one body."""
-
-_LENGTHS = ("speculative_margin", "displacement_threshold", "confidence", "culling_distance", "distance_extension")
-_COUNTS = ("max_contacts_per_pair", "max_contacts", "threads", "max_iterations")
-_SWITCHES = ("inexact", "cast_lost_walks", "skip_outside")
-_MAY_BE_NONE = ("speculative_margin", "displacement_threshold", "culling_distance", "distance_extension")
-
-
-def as_settings(words: dict[str, Any]) -> dict[str, Any]:
-    """Settings with the types that the C++ half takes; words of choices it checks itself."""
-    made: dict[str, Any] = {}
-    for key, value in words.items():
-        if value is None and key in _MAY_BE_NONE:
-            made[key] = None
-        elif key in _LENGTHS:
-            made[key] = as_length(value, key)
-        elif key in _COUNTS:
-            made[key] = as_count(value, key)
-        elif key in _SWITCHES or key == "speculative":
-            if not isinstance(value, (bool, np.bool_)):
-                raise InputError(f"{key}: {value!r} is neither True nor False")
-            made[key] = bool(value)
-        elif not isinstance(value, str) or not value.isascii():
-            raise InputError(f"{key}: {value!r} is no word")
-        else:
-            made[key] = value
-    return made
 
 
 class LostContacts(NamedTuple):
@@ -73,6 +62,22 @@ class BodyRayHits(NamedTuple):
     body: Union[int, NDArray[np.int64]]
 
 
+class OneBodyRayHit(BodyRayHits):
+    """A `BodyRayHits` of a single question.
+
+    distance: a float, metres.
+    point: (3,) float64.
+    normal: (3,) float64.
+    triangle: an int.
+    body: an int.
+    """
+
+    __slots__ = ()
+    distance: float
+    triangle: int
+    body: int
+
+
 class BodyClosestPoints(NamedTuple):
     """Points of all surfaces that are nearest to others. Where none is near enough: inf, NaN and -1.
 
@@ -86,6 +91,32 @@ class BodyClosestPoints(NamedTuple):
     point: NDArray[np.float64]
     triangle: Union[int, NDArray[np.int64]]
     body: Union[int, NDArray[np.int64]]
+
+
+class OneBodyClosestPoint(BodyClosestPoints):
+    """A `BodyClosestPoints` of a single question.
+
+    distance: a float, metres.
+    point: (3,) float64.
+    triangle: an int.
+    body: an int.
+    """
+
+    __slots__ = ()
+    distance: float
+    triangle: int
+    body: int
+
+
+class BodyOverlaps(NamedTuple):
+    """Which shapes of a batch meet which bodies, sorted by item, then by the body's slot.
+
+    item: (n,) int64: place in the batch, last dimension first (`np.unravel_index`).
+    body: (n,) int64: id.
+    """
+
+    item: NDArray[np.int64]
+    body: NDArray[np.int64]
 
 
 class Scene:
@@ -147,18 +178,18 @@ class Scene:
 
     @overload
     def add(
-        self, shapes: Union[list[Shape], tuple[Shape, ...]], poses: Optional[ArrayLike] = None
+        self, shapes: Union[list[Shape], tuple[Shape, ...]], poses: Optional[PoseLike] = None
     ) -> NDArray[np.int64]: ...
 
     @overload
-    def add(self, shapes: Shapes, poses: Optional[ArrayLike] = None) -> Union[int, NDArray[np.int64]]: ...
+    def add(self, shapes: Shapes, poses: Optional[PoseLike] = None) -> Union[int, NDArray[np.int64]]: ...
 
-    def add(self, shapes: Shapes, poses: Optional[ArrayLike] = None) -> Union[int, NDArray[np.int64]]:
+    def add(self, shapes: Shapes, poses: Optional[PoseLike] = None) -> Union[int, NDArray[np.int64]]:
         """Adds bodies: all or none.
 
         shapes: one for all poses, or a list of one for each.
-        poses: one for all shapes or one for each, (4, 4) or (n, 4, 4), rigid, from the body's frame to the world,
-            metres; None is the identity.
+        poses: one for all shapes or one for each, (4, 4) or (n, 4, 4), or (R, t), as of `collide`, rigid, from the
+            body's frame to the world, metres; None is the identity.
         Returns an id for one shape and one pose, else (n,) int64. No id is ever given twice.
         Raises InputError for poses that are not finite and rigid to 1e-4, and for numbers that do not fit.
         """
@@ -173,16 +204,18 @@ class Scene:
         are gone."""
         self._core.remove(as_ids(ids, "ids")[0])
 
-    def set_poses(self, ids: ArrayLike, poses: ArrayLike) -> None:
+    def set_poses(self, ids: ArrayLike, poses: PoseLike) -> None:
         """Moves bodies: all or none.
 
-        ids: one or (n,). poses: (n, 4, 4), or (4, 4) for all, from the body's frame to the world, metres, taken as they
-            are (`nearest_rigid` mends those that drifted). Of a CUDA device, too: what has a
-            `__cuda_array_interface__` (torch, CuPy, Numba, Warp, JAX) is read when its stream has written it, or, where
-            it names none, when the device has done what it was given.
+        ids: one or (n,). poses: (n, 4, 4), or (4, 4) for all, or (R, t), as of `collide`, from the body's frame to the
+            world, metres, taken as they are (`nearest_rigid` mends those that drifted). Of a CUDA device, too: what has
+            a `__cuda_array_interface__` (torch, CuPy, Numba, Warp, JAX) is read when its stream has written it, or,
+            where it names none, when the device has done what it was given.
         Raises InputError naming the place in the list: an id that is not in the scene, a pose that is not finite and
         rigid to 1e-4; and where numbers of ids and poses differ.
         """
+        if type(ids) is int and self._core.set_pose(ids, poses):
+            return
         numbers, _ = as_ids(ids, "ids")
         self._core.set_poses(numbers, _for_each(as_poses(poses, "poses"), len(numbers)))
 
@@ -193,7 +226,7 @@ class Scene:
         matrices = self._core.poses(numbers)
         return matrices[0] if one else matrices
 
-    def set_next_poses(self, ids: ArrayLike, poses: ArrayLike) -> None:
+    def set_next_poses(self, ids: ArrayLike, poses: PoseLike) -> None:
         """Where bodies are expected after the next step, for its speculative contacts; without it they are expected to
         go on as they did. Does nothing unless the scene is speculative. Arguments and errors are those of `set_poses`,
         but bodies before the one to blame have theirs."""
@@ -304,41 +337,233 @@ class Scene:
         """
         return self._core.device_choice
 
-    def raycast(self, origins: ArrayLike, directions: ArrayLike, max: float = np.inf) -> BodyRayHits:
+    @overload
+    def raycast(
+        self, origins: ManyPoints, directions: ArrayLike, max: float = np.inf, *, wanted: Optional[ArrayLike] = None
+    ) -> BodyRayHits: ...
+
+    @overload
+    def raycast(
+        self, origins: ArrayLike, directions: ManyPoints, max: float = np.inf, *, wanted: Optional[ArrayLike] = None
+    ) -> BodyRayHits: ...
+
+    @overload
+    def raycast(
+        self, origins: OnePoint, directions: OnePoint, max: float = np.inf, *, wanted: Optional[ArrayLike] = None
+    ) -> OneBodyRayHit: ...
+
+    @overload
+    def raycast(
+        self, origins: ArrayLike, directions: ArrayLike, max: float = np.inf, *, wanted: Optional[ArrayLike] = None
+    ) -> BodyRayHits: ...
+
+    def raycast(
+        self, origins: ArrayLike, directions: ArrayLike, max: float = np.inf, *, wanted: Optional[ArrayLike] = None
+    ) -> BodyRayHits:
         """The body that each ray meets first, poses set since the last step included.
 
-        origins, directions: (3,) or (n, 3), metres, world frame; directions of any length. max: metres.
+        origins, directions: (3,) or (..., 3), metres, world frame; directions of any length; they fit as NumPy
+            broadcasts. max: metres.
+        wanted: (n,), ids of the bodies that count; None: all.
         Raises InputError for a direction that is zero or not finite, an origin that is not finite, a `max` that is
-        negative or NaN, and where numbers of origins and directions differ.
+        negative or NaN, an id that is not in the scene, and where numbers of origins and directions differ.
         """
-        starts, along = as_points(origins, "origins"), as_points(directions, "directions")
-        batch = Batch(origins=starts.shape[:-1], directions=along.shape[:-1])
-        starts, along = (np.broadcast_to(x, (*batch.shape, 3)).reshape(-1, 3) for x in (starts, along))
-        hits = self._core.raycast(np.ascontiguousarray(starts), np.ascontiguousarray(along), as_length(max, "max"))
-        return BodyRayHits(*batch.answers((*hits[0], hits[1])))
+        batch, starts, along = _rays(origins, directions)
+        hits = self._core.raycast(starts, along, as_length(max, "max"), _wanted(wanted))
+        return batch.answer(OneBodyRayHit, BodyRayHits, (*hits[0], hits[1]))
 
-    def closest_point(self, points: ArrayLike, max: float = np.inf) -> BodyClosestPoints:
+    @overload
+    def raycast_any(
+        self, origins: ManyPoints, directions: ArrayLike, max: float = np.inf, *, wanted: Optional[ArrayLike] = None
+    ) -> Union[bool, NDArray[np.bool_]]: ...
+
+    @overload
+    def raycast_any(
+        self, origins: ArrayLike, directions: ManyPoints, max: float = np.inf, *, wanted: Optional[ArrayLike] = None
+    ) -> Union[bool, NDArray[np.bool_]]: ...
+
+    @overload
+    def raycast_any(
+        self, origins: OnePoint, directions: OnePoint, max: float = np.inf, *, wanted: Optional[ArrayLike] = None
+    ) -> bool: ...
+
+    @overload
+    def raycast_any(
+        self, origins: ArrayLike, directions: ArrayLike, max: float = np.inf, *, wanted: Optional[ArrayLike] = None
+    ) -> Union[bool, NDArray[np.bool_]]: ...
+
+    def raycast_any(
+        self, origins: ArrayLike, directions: ArrayLike, max: float = np.inf, *, wanted: Optional[ArrayLike] = None
+    ) -> Union[bool, NDArray[np.bool_]]:
+        """Whether `raycast` has a hit; ends at the first one found. Arguments and errors are those of `raycast`. Gives
+        a bool, or (n,) bool for many rays."""
+        batch, starts, along = _rays(origins, directions)
+        met = self._core.raycast_any(starts, along, as_length(max, "max"), _wanted(wanted))
+        (found,) = batch.answers((met.view(np.bool_),))
+        return found
+
+    @overload
+    def closest_point(
+        self, points: ManyPoints, max: float = np.inf, *, wanted: Optional[ArrayLike] = None
+    ) -> BodyClosestPoints: ...
+
+    @overload
+    def closest_point(
+        self, points: OnePoint, max: float = np.inf, *, wanted: Optional[ArrayLike] = None
+    ) -> OneBodyClosestPoint: ...
+
+    @overload
+    def closest_point(
+        self, points: ArrayLike, max: float = np.inf, *, wanted: Optional[ArrayLike] = None
+    ) -> BodyClosestPoints: ...
+
+    def closest_point(
+        self, points: ArrayLike, max: float = np.inf, *, wanted: Optional[ArrayLike] = None
+    ) -> BodyClosestPoints:
         """The point of all surfaces that is nearest to each point, within `max` metres.
 
-        points: (3,) or (n, 3), metres, world frame. Poses set since the last step count. Raises InputError for a point
-        that is not finite, and a `max` that is negative or NaN.
+        points: (3,) or (n, 3), metres, world frame. Poses set since the last step count.
+        wanted: (n,), ids of the bodies that count; None: all.
+        Raises InputError for a point that is not finite, a `max` that is negative or NaN, and an id that is not in the
+        scene.
         """
         places = as_points(points, "points")
         batch = Batch(points=places.shape[:-1])
-        found = self._core.closest_points(places.reshape(-1, 3), as_length(max, "max"))
-        return BodyClosestPoints(*batch.answers((*found[0], found[1])))
+        found = self._core.closest_points(places.reshape(-1, 3), as_length(max, "max"), _wanted(wanted))
+        return batch.answer(OneBodyClosestPoint, BodyClosestPoints, (*found[0], found[1]))
 
-    def overlaps(self, shape: ShapeLike, pose: Optional[ArrayLike] = None) -> NDArray[np.int64]:
-        """(n,) int64: the bodies whose meshes intersect another one, placed here; by slot. Exact.
+    @overload
+    def overlaps(
+        self, shapes: ShapeLike, poses: None = None, *, wanted: Optional[ArrayLike] = None
+    ) -> NDArray[np.int64]: ...
 
-        pose: (4, 4), from the shape's frame to the world, metres; None is the identity. Raises InputError for one that
-        is not finite and rigid to 1e-4.
+    @overload
+    def overlaps(
+        self,
+        shapes: Union[list[Shape], tuple[Shape, ...]],
+        poses: Optional[PoseLike] = None,
+        *,
+        wanted: Optional[ArrayLike] = None,
+    ) -> BodyOverlaps: ...
+
+    @overload
+    def overlaps(
+        self, shapes: Shapes, poses: Optional[PoseLike] = None, *, wanted: Optional[ArrayLike] = None
+    ) -> Any: ...
+
+    def overlaps(
+        self, shapes: Shapes, poses: Optional[PoseLike] = None, *, wanted: Optional[ArrayLike] = None
+    ) -> Union[NDArray[np.int64], BodyOverlaps]:
+        """The bodies whose meshes intersect others, placed here. Exact.
+
+        shapes: one, or a list. poses: (4, 4) or (..., 4, 4), or (R, t), as of `collide`, rigid, from the shape's frame
+            to the world, metres; None is the identity. They fit as NumPy broadcasts.
+        wanted: (n,), ids of the bodies that count; None: all.
+        Gives (n,) int64, ids by slot, for one shape and one pose; else BodyOverlaps, whose (n,) say which item meets
+        which body. Raises InputError for poses that are not finite and rigid to 1e-4, and an id that is not in the
+        scene.
         """
-        return self._core.overlaps(as_shape(shape)._core, as_pose(pose, "pose")[None])
+        if type(shapes) is Shape and wanted is None:
+            one = self._core.one_overlaps(shapes._core, poses)
+            if one is not None:
+                return one
+        cores, matrices, lead, _ = _placed(shapes, poses)
+        item, body = self._core.overlaps(cores, matrices, _wanted(wanted))
+        return body if lead == () else BodyOverlaps(item, body)
+
+    @overload
+    def overlaps_any(
+        self, shapes: ShapeLike, poses: None = None, *, each: bool = False, wanted: Optional[ArrayLike] = None
+    ) -> bool: ...
+
+    @overload
+    def overlaps_any(
+        self,
+        shapes: Shapes,
+        poses: Optional[PoseLike] = None,
+        *,
+        each: bool = False,
+        wanted: Optional[ArrayLike] = None,
+    ) -> Union[bool, NDArray[np.bool_]]: ...
+
+    def overlaps_any(
+        self,
+        shapes: Shapes,
+        poses: Optional[PoseLike] = None,
+        *,
+        each: bool = False,
+        wanted: Optional[ArrayLike] = None,
+    ) -> Union[bool, NDArray[np.bool_]]:
+        """Whether any body meets a shape, or any of a list, as of the links of a robot; ends at the first one found.
+
+        A list of l shapes is one thing: with poses (n, l, 4, 4) it has answers (n,), and a bool with (l, 4, 4).
+        each: asks for each shape by itself: (n, l).
+        shapes, poses, wanted and errors are those of `overlaps`. Gives a bool, or (n,) bool. The scene's threads share
+        the work.
+        """
+        if wanted is None and not each:
+            if type(shapes) is Shape:
+                one = self._core.one_overlaps_any([shapes._core], poses, False)
+                if one is not None:
+                    return one
+            elif type(shapes) is list and poses is not None and all([type(shape) is Shape for shape in shapes]):
+                one = self._core.one_overlaps_any([shape._core for shape in shapes], poses, True)
+                if one is not None:
+                    return one
+        cores, matrices, lead, is_list = _placed(shapes, poses)
+        links = 1
+        if is_list and not each:
+            lead, links = lead[:-1], lead[-1]
+        if links == 0:
+            return np.zeros(lead, np.bool_) if lead else False
+        found = self._core.overlaps_any(cores, matrices, links, _wanted(wanted)).view(np.bool_)
+        return bool(found[0]) if lead == () else found.reshape(lead)
+
+    @overload
+    def distance(self, a: _Id, b: _Id, *, max: float = np.inf) -> OneDistance: ...
+
+    @overload
+    def distance(self, a: ArrayLike, b: ArrayLike, *, max: float = np.inf) -> Distance: ...
+
+    def distance(self, a: ArrayLike, b: ArrayLike, *, max: float = np.inf) -> Distance:
+        """The least distance of two bodies' surfaces, as `raycontact.distance` has it, poses set since the last step
+        included.
+
+        a, b: ids, one or (...,), which fit as NumPy broadcasts. max: metres, beyond which it is not looked for. Raises
+        InputError for an id that is not in the scene, and a `max` that is negative or NaN.
+        """
+        ids_a, ids_b = as_id_array(a, "a"), as_id_array(b, "b")
+        batch = Batch(a=ids_a.shape, b=ids_b.shape)
+        found = self._core.distances(
+            batch.flat(ids_a, ids_a.shape), batch.flat(ids_b, ids_b.shape), as_length(max, "max")
+        )
+        return batch.answer(OneDistance, Distance, found)
 
     def __repr__(self) -> str:
         settings = self._core.settings
         return f"<Scene: {len(self)} bodies, method {settings['method']}, devices {settings['devices']}>"
+
+
+def _wanted(ids: Optional[ArrayLike]) -> Optional[NDArray[np.int64]]:
+    return None if ids is None else as_ids(ids, "wanted")[0]
+
+
+def _rays(origins: ArrayLike, directions: ArrayLike) -> tuple[Batch, NDArray[np.float64], NDArray[np.float64]]:
+    """The batch, and both of one ray or of all."""
+    starts, along = as_points(origins, "origins"), as_points(directions, "directions")
+    batch = Batch(origins=starts.shape[:-1], directions=along.shape[:-1])
+    return batch, batch.flat(starts, starts.shape[:-1]), batch.flat(along, along.shape[:-1])
+
+
+def _placed(
+    shapes: Shapes, poses: Optional[PoseLike]
+) -> tuple[list[_core.Shape], NDArray[np.float64], tuple[int, ...], bool]:
+    """Shapes of the C++ half, which repeat, a pose for each item, the batch's shape, whether shapes are a list."""
+    cores, lead = as_shapes(shapes, "shapes")
+    matrices = as_poses(poses, "poses", rigid=True)
+    shape = Batch(shapes=lead, poses=matrices.shape[:-2]).shape
+    matrices = np.ascontiguousarray(np.broadcast_to(matrices, (*shape, 4, 4))).reshape(-1, 4, 4)
+    return cores, matrices, shape, lead != ()
 
 
 def _for_each(poses: NDArray[np.float64], count: int) -> NDArray[np.float64]:
@@ -348,4 +573,7 @@ def _for_each(poses: NDArray[np.float64], count: int) -> NDArray[np.float64]:
     return np.ascontiguousarray(np.broadcast_to(poses, (count, 4, 4)))
 
 
-__all__ = ["BodyClosestPoints", "BodyRayHits", "LostContacts", "Scene", "StepStats"]
+__all__ = [
+    "BodyClosestPoints", "BodyOverlaps", "BodyRayHits", "LostContacts", "OneBodyClosestPoint", "OneBodyRayHit", "Scene",
+    "StepStats",
+]  # fmt: skip

@@ -3,16 +3,25 @@
 
 from __future__ import annotations
 
+import sys
+import warnings
 from collections.abc import Sequence
-from typing import Any, NamedTuple, Union
+from typing import Any, NamedTuple, Optional, Union
 
 import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
-from ._arrays import as_count
+from ._arrays import ScaleLike, as_count
 from ._core import InputError, MeshReport
 from .mesh import Mesh, MeshLike
+
+
+class SheetWarning(UserWarning):
+    """A question about the inside of a shape that has none, told once for each shape.
+
+    `warnings.simplefilter("ignore", raycontact.SheetWarning)` silences it where sheets are meant.
+    """
 
 
 class Mass(NamedTuple):
@@ -34,7 +43,7 @@ class Shape:
     `Shape(mesh)` takes whatever `Mesh` takes alone: a Mesh, a file, an object with `vertices` and `faces`. To make one
     costs some microseconds a triangle, so make it once.
 
-    scale: what coordinates are multiplied by; 0.001 for a mesh in millimetres.
+    scale: what coordinates are multiplied by, as `Mesh` has it: a factor or three, negative ones mirror.
     repair: drop degenerate and duplicate triangles, make windings agree, turn components as `nesting` says; `report`
         names what was done. False: change nothing.
     nesting: which way closed components wind: "as_wound" (outermost ones outward, those inside others as they are),
@@ -45,6 +54,9 @@ class Shape:
     overlaps: parts of one closed mesh that cross or lie in each other become one solid ("unite"), or stay ("leave").
     threads: 0 is one for each core; no bit depends on it.
 
+    It can be pickled, and sent to another process: there it is the same to the bit, vertices, triangles, indices,
+    report and contacts. Nothing is repaired anew; what `prepare` makes is not kept.
+
     Raises InputError for a mesh without area, and as `Mesh` does. Safe to use from any thread.
     """
 
@@ -52,24 +64,33 @@ class Shape:
         self,
         mesh: MeshLike,
         *,
-        scale: float = 1.0,
+        scale: ScaleLike = 1.0,
         repair: bool = True,
         nesting: str = "as_wound",
         holes: str = "of_solids",
         overlaps: str = "unite",
         threads: int = 0,
     ) -> None:
-        if not isinstance(mesh, Mesh) or scale != 1.0:
+        if not isinstance(mesh, Mesh) or type(scale) is not float or scale != 1.0:
             mesh = Mesh(mesh, scale=scale)
         self._core = _core.make_shape(
             mesh._core, bool(repair), str(nesting), str(holes), str(overlaps), as_count(threads, "threads")
         )
+        self._untold = not self._core.has_inside
 
     @classmethod
     def _wrap(cls, core: _core.Shape) -> Shape:
         shape = cls.__new__(cls)
         shape._core = core
+        shape._untold = not core.has_inside
         return shape
+
+    def _tell_sheet(self, asked: str) -> None:
+        """Warns the first time, if the shape has no inside. Callers look at `_untold` first."""
+        self._untold = False
+        name = f"the mesh {self.name!r}" if self.name else "a mesh"
+        words = f"{asked}: {name} has no inside, so {_OF_SHEETS[asked]}; it is {self.report.verdict}"
+        warnings.warn(words, SheetWarning, stacklevel=_levels_out())
 
     def prepare(self, threads: int = 0) -> None:
         """Makes what only speeds up later steps: 10 to 45 times the work of making the shape. A scene has it made
@@ -154,7 +175,8 @@ class Shape:
 
     @property
     def mass(self) -> Mass:
-        """By volume integrals over the closed mesh, for unit density; all 0 where it encloses nothing."""
+        """By volume integrals over the closed mesh, for unit density; the volume is `report.volume`. All 0 where the
+        mesh is open or encloses nothing, negative where it winds inward."""
         volume, centre, inertia = self._core.mass
         return Mass(volume, np.array(centre), inertia)
 
@@ -170,10 +192,30 @@ class Shape:
         return self
 
     def __reduce__(self) -> Any:
-        raise TypeError("a Shape cannot be pickled; pickle its Mesh and make it anew, or let the process fork")
+        kept = self.vertices, self.triangles, self.vertex_index, self.triangle_index
+        return _remade, (self.name, *map(np.asarray, kept), self.report)
 
     def __repr__(self) -> str:
         return f"<Shape {self.name!r}: {self.report.triangles} triangles, {self.report.verdict}>"
+
+
+_OF_SHEETS = {
+    "contains": "no point is in it",
+    "signed_distance": "no point is below 0",
+    "distance": "what lies in it is not at 0 but at the distance of the surfaces",
+}
+
+
+def _remade(name: str, *kept: Any) -> Shape:
+    return Shape._wrap(_core.remake_shape(name, *kept))
+
+
+def _levels_out() -> int:
+    """Where this package was called from, as `warnings.warn` counts for a caller of this."""
+    frame, levels = sys._getframe(1), 1
+    while frame.f_back is not None and frame.f_globals.get("__name__", "").startswith(f"{__package__}."):
+        frame, levels = frame.f_back, levels + 1
+    return levels
 
 
 ShapeLike = Union[Shape, MeshLike]
@@ -188,23 +230,42 @@ def as_shape(value: ShapeLike) -> Shape:
     return value if isinstance(value, Shape) else Shape(value)
 
 
-def as_shapes(value: Any, what: str) -> tuple[list[_core.Shape], tuple[int, ...]]:
-    """The C++ half's shapes, and () for a single one or (n,). What is there several times is made once."""
+def as_solid(value: ShapeLike, asked: str) -> Shape:
+    """As `as_shape`; warns if it has no inside. asked: the question."""
+    shape = as_shape(value)
+    if shape._untold:
+        shape._tell_sheet(asked)
+    return shape
+
+
+def as_shapes(value: Any, what: str, asked: Optional[str] = None) -> tuple[list[_core.Shape], tuple[int, ...]]:
+    """The C++ half's shapes, and () for a single one or (n,). What is there several times is made once.
+
+    asked: a question that warns of those without an inside."""
+    made, lead = _as_shapes(value, what)
+    if asked is not None:
+        for shape in made:
+            if shape._untold:
+                shape._tell_sheet(asked)
+    return [shape._core for shape in made], lead
+
+
+def _as_shapes(value: Any, what: str) -> tuple[list[Shape], tuple[int, ...]]:
     if isinstance(value, Shape):
-        return [value._core], ()
+        return [value], ()
     is_list = isinstance(value, (list, tuple)) or (isinstance(value, np.ndarray) and value.dtype == object)
     if not is_list or hasattr(value, "faces"):
-        return [as_shape(value)._core], ()
-    made: dict[int, _core.Shape] = {}
-    cores = []
+        return [as_shape(value)], ()
+    made: dict[int, Shape] = {}
+    shapes = []
     for i, item in enumerate(value):
         if id(item) not in made:
             try:
-                made[id(item)] = as_shape(item)._core
+                made[id(item)] = as_shape(item)
             except InputError as error:
                 raise InputError(f"{what}[{i}]: {error}") from None
-        cores.append(made[id(item)])
-    return cores, (len(cores),)
+        shapes.append(made[id(item)])
+    return shapes, (len(shapes),)
 
 
-__all__ = ["Mass", "Shape", "ShapeLike", "Shapes"]
+__all__ = ["Mass", "Shape", "ShapeLike", "Shapes", "SheetWarning"]

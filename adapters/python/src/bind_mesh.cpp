@@ -15,6 +15,8 @@
 #include <cstddef>
 #include <span>
 #include <string_view>
+#include <type_traits>
+#include <utility>
 
 namespace raycontact::python {
 
@@ -36,6 +38,34 @@ MeshFormat format_from(std::string_view word) {
     throw InputError("format \"" + std::string(word) + "\" is not known; give obj, stl, ply, off, gltf, glb or 3mf");
 }
 
+/// Each of a report, in order. One that is added does not compile before it is named here.
+template <typename Report, typename Visit>
+void for_each_field(Report& report, const Visit& visit) {
+    auto& [vertices, triangles, file_vertices, file_triangles, closed, solid, border_edges, holes, spanning, manifold,
+           oriented, checked, self_intersecting, outward, components, volume, area, box_min, box_max, repairs] = report;
+    visit(vertices), visit(triangles), visit(file_vertices), visit(file_triangles), visit(closed), visit(solid);
+    visit(border_edges), visit(holes), visit(spanning), visit(manifold), visit(oriented), visit(checked);
+    visit(self_intersecting), visit(outward), visit(components), visit(volume), visit(area);
+    for (auto* corner : {&box_min, &box_max}) visit(corner->x), visit(corner->y), visit(corner->z);
+    visit(repairs);
+}
+
+nb::tuple state_of(const MeshReport& report) {
+    nb::list state;
+    for_each_field(report, [&](const auto& field) { state.append(nb::cast(field)); });
+    return nb::tuple(state);
+}
+
+void set_state(MeshReport& made, const nb::tuple& state) {
+    MeshReport report;
+    std::size_t count = 0, at = 0;
+    for_each_field(report, [&](auto&) { ++count; });
+    if (state.size() != count) throw InputError("MeshReport: the pickle is of another version; make the shape anew");
+    for_each_field(report,
+                   [&](auto& field) { field = nb::cast<std::remove_reference_t<decltype(field)>>(state[at++]); });
+    new (&made) MeshReport(std::move(report));
+}
+
 void bind_report(nb::module_& m) {
     nb::class_<MeshReport>(m, "MeshReport", "What a mesh is, after the repairs it names.")
         .def_ro("vertices", &MeshReport::vertices, "distinct positions in use by a triangle")
@@ -43,6 +73,7 @@ void bind_report(nb::module_& m) {
         .def_ro("file_vertices", &MeshReport::file_vertices, "as given")
         .def_ro("file_triangles", &MeshReport::file_triangles, "as given, polygons split")
         .def_ro("closed", &MeshReport::closed, "every edge has a triangle on both sides")
+        .def_ro("solid", &MeshReport::solid, "has an inside: closed, oriented, and it holds something")
         .def_ro("border_edges", &MeshReport::border_edges, "edges met an odd number of times; 0: closed")
         .def_ro("holes", &MeshReport::holes, "spanned ones")
         .def_prop_ro("kind", &kind_of, "'solid', 'solid with holes' or 'sheet'")
@@ -53,7 +84,7 @@ void bind_report(nb::module_& m) {
                 "two triangles meet elsewhere than in their shared vertices or edge")
         .def_ro("outward", &MeshReport::outward, "closed and oriented, its normals pointing out everywhere")
         .def_ro("components", &MeshReport::components, "connected over shared vertices")
-        .def_ro("volume", &MeshReport::volume, "m^3, signed; 0 when not closed")
+        .def_ro("volume", &MeshReport::volume, "m^3, signed; 0 unless solid")
         .def_ro("area", &MeshReport::area, "m^2")
         .def_ro("repairs", &MeshReport::repairs, "in words with counts; empty when nothing was changed")
         .def_prop_ro(
@@ -65,6 +96,8 @@ void bind_report(nb::module_& m) {
         .def(
             "to_json", [](const MeshReport& report) { return to_json(report); },
             "The JSON of `raycontact mesh --json`.")
+        .def("__getstate__", &state_of)
+        .def("__setstate__", &set_state)
         .def("__repr__",
              [](const MeshReport& report) {
                  return "<MeshReport: " + std::to_string(report.triangles) + " triangles, " + verdict_of(report).text

@@ -10,6 +10,7 @@
 
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
 #include <algorithm>
@@ -19,6 +20,8 @@
 #include <cstdint>
 #include <limits>
 #include <numeric>
+#include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -26,7 +29,12 @@ namespace raycontact::python {
 
 namespace {
 
-/// Shapes that have places: which of them meet. Rows count from 0.
+using Rows = std::pair<std::uint32_t, std::uint32_t>;
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+
+/// Shapes that have places: which of them meet, and which are nearest. Rows count from 0. Who else holds a list may ask
+/// it at the same time, as long as nobody moves what is in it.
 class PlacedList {
 public:
     PlacedList(std::vector<std::shared_ptr<Shape>> shapes, const Matrices& poses)
@@ -39,61 +47,112 @@ public:
         if (!pose) return false;
         poses_.at(row) = *pose;
         boxes_[row] = box_of(*shapes_[row], *pose);
+        sorted_along_ = none;
         return true;
     }
-    /// Pairs of rows that are not asked, the lower one first; sorted.
-    void set_allowed(std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs) {
+    Array poses() const { return matrices_of(poses_); }
+    /// Distances of the last nearest().
+    std::size_t asked() const { return asked_; }
+    /// Pairs of rows that any() and all() do not ask, the lower one first; sorted.
+    void set_allowed(std::vector<Rows> pairs) {
         std::ranges::sort(pairs);
         allowed_ = std::move(pairs);
     }
 
     /// Whether any two meet, or any of these and any of the others.
-    bool any(const PlacedList* others) const {
-        constexpr std::size_t alone = 64, block = 1 << 14;
-        std::vector<Rows> near;
-        {
-            const WithoutGil without_gil;
-            near = near_pairs(others, without_gil.flag());
-            for (std::size_t i = 0; i < std::min(alone, near.size()); ++i)
-                if (meet(near[i], others)) return true;
-        }
-        std::atomic<bool> found = false;
-        for (std::size_t begin = alone; begin < near.size() && !found; begin += block)
-            for_each_item(std::min(block, near.size() - begin), 0, "pair", [&](std::size_t i) {
-                if (!found && meet(near[begin + i], others)) found = true;
+    bool any(PlacedList* others) {
+        constexpr std::size_t alone = 64;
+        const std::size_t axis = sort(others);
+        std::vector<Near> near;
+        for (std::size_t at = 0; at < places(others);) {
+            {
+                const WithoutGil without_gil;
+                at = find_near(others, axis, at, 0, near, without_gil.flag());
+                for (std::size_t i = 0; i < std::min(alone, near.size()); ++i)
+                    if (!is_allowed(near[i], others) && meet(near[i], others)) return true;
+            }
+            if (near.size() <= alone) continue;
+            std::atomic<bool> found = false;
+            for_each_item(near.size() - alone, 0, "pair", [&](std::size_t i) {
+                const Near& pair = near[alone + i];
+                if (!found && !is_allowed(pair, others) && meet(pair, others)) found = true;
             });
-        return found;
+            if (found) return true;
+        }
+        return false;
     }
     /// All pairs of rows that meet, in order.
-    std::pair<Array, Array> all(const PlacedList* others) const {
-        std::vector<Rows> near;
-        {
-            const WithoutGil without_gil;
-            near = near_pairs(others, without_gil.flag());
-            std::ranges::sort(near);
+    std::pair<Array, Array> all(PlacedList* others) {
+        const std::size_t axis = sort(others);
+        std::vector<Near> near;
+        std::vector<Rows> met;
+        for (std::size_t at = 0; at < places(others);) {
+            {
+                const WithoutGil without_gil;
+                at = find_near(others, axis, at, 0, near, without_gil.flag());
+                std::erase_if(near, [&](const Near& pair) { return is_allowed(pair, others); });
+            }
+            std::vector<char> hit(near.size());
+            for_each_item(near.size(), 0, "pair", [&](std::size_t i) { hit[i] = meet(near[i], others); });
+            for (std::size_t i = 0; i < near.size(); ++i)
+                if (hit[i]) met.push_back(near[i].rows);
         }
-        std::vector<char> hit(near.size());
-        for_each_item(near.size(), 0, "pair", [&](std::size_t i) { hit[i] = meet(near[i], others); });
+        std::ranges::sort(met);
         std::vector<std::int64_t> one, other;
-        for (std::size_t i = 0; i < near.size(); ++i) {
-            if (!hit[i]) continue;
-            one.push_back(near[i].first);
-            other.push_back(near[i].second);
+        for (const auto& [i, k] : met) {
+            one.push_back(i);
+            other.push_back(k);
         }
-        const std::size_t count = one.size();
-        return {array_of(std::move(one), {count}), array_of(std::move(other), {count})};
+        return {array_of(std::move(one), {met.size()}), array_of(std::move(other), {met.size()})};
+    }
+    /// The least distance of any two, or of any of these and any of the others but one, with their rows; infinite, and
+    /// rows without meaning, where there is no pair.
+    std::tuple<double, std::int64_t, std::int64_t> nearest(PlacedList* others, std::int64_t but) {
+        const std::size_t axis = sort(others);
+        asked_ = 0;
+        Near best{infinite, {}};
+        double reach = upper_bound_of(others, axis, but);
+        std::vector<Near> near;
+        for (std::size_t at = 0; at < places(others) && best.distance > 0;) {
+            {
+                const WithoutGil without_gil;
+                at = find_near(others, axis, at, reach, near, without_gil.flag());
+                std::erase_if(near, [&](const Near& pair) { return others != nullptr && pair.rows.second == but; });
+                std::ranges::sort(near);
+            }
+            look(others, near, reach, best);
+        }
+        return {best.distance, best.rows.first, best.rows.second};
     }
 
 private:
-    using Rows = std::pair<std::uint32_t, std::uint32_t>;
     struct Box {
         std::array<double, 3> low, high;
-        bool touches(const Box& other) const {
-            for (std::size_t k = 0; k < 3; ++k)
-                if (low[k] > other.high[k] || other.low[k] > high[k]) return false;
-            return true;
+        double apart(const Box& other) const {
+            double sum = 0;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const double off = std::max({low[k] - other.high[k], other.low[k] - high[k], 0.0});
+                sum += off * off;
+            }
+            return std::sqrt(sum);
+        }
+        /// What is in the two is no farther apart than this.
+        double farthest(const Box& other) const {
+            double sum = 0;
+            for (std::size_t k = 0; k < 3; ++k) {
+                const double off = std::max(high[k] - other.low[k], other.high[k] - low[k]);
+                sum += off * off;
+            }
+            return std::sqrt(sum);
         }
     };
+    /// Of two boxes, or of what is in them.
+    struct Near {
+        double distance;
+        Rows rows;
+        auto operator<=>(const Near&) const = default;
+    };
+    static constexpr std::size_t none = 3;
 
     /// Grown by what is rounded: whether bodies meet is decided exactly, by the last bit.
     static Box box_of(const Shape& shape, const Pose& pose) {
@@ -116,74 +175,134 @@ private:
         return box;
     }
 
-    bool is_allowed(const Rows& rows) const { return std::ranges::binary_search(allowed_, rows); }
-    bool meet(const Rows& rows, const PlacedList* others) const {
-        const PlacedList& other = others != nullptr ? *others : *this;
-        return intersects(*shapes_[rows.first], poses_[rows.first], *other.shapes_[rows.second],
-                          other.poses_[rows.second]);
+    const PlacedList& or_own(const PlacedList* others) const { return others != nullptr ? *others : *this; }
+    bool is_allowed(const Near& pair, const PlacedList* others) const {
+        return others == nullptr && !allowed_.empty() && std::ranges::binary_search(allowed_, pair.rows);
     }
-    std::vector<std::uint32_t> by_begin(std::size_t axis) const {
-        std::vector<std::uint32_t> order(boxes_.size());
-        std::iota(order.begin(), order.end(), 0u);
-        std::ranges::sort(order, {}, [&](std::uint32_t i) { return boxes_[i].low[axis]; });
-        return order;
+    bool meet(const Near& pair, const PlacedList* others) const {
+        const auto& [i, k] = pair.rows;
+        return intersects(*shapes_[i], poses_[i], *or_own(others).shapes_[k], or_own(others).poses_[k]);
     }
-    /// Along which they reach farthest.
-    std::size_t longest_axis() const {
-        std::array<double, 3> extent{};
+
+    /// Along which boxes are spread the most, measured in boxes: a sweep along it meets the fewest.
+    std::size_t widest_axis() const {
+        std::array<double, 3> spread{};
         for (std::size_t k = 0; k < 3; ++k) {
-            const auto [first, last] = std::ranges::minmax(boxes_, {}, [&](const Box& box) { return box.low[k]; });
-            extent[k] = last.low[k] - first.low[k];
-        }
-        return static_cast<std::size_t>(std::ranges::max_element(extent) - extent.begin());
-    }
-    /// Whose boxes touch: sort and sweep. stopped: by Ctrl-C; null: never.
-    std::vector<Rows> near_pairs(const PlacedList* others, const std::atomic<bool>* stopped) const {
-        std::vector<Rows> found;
-        if (boxes_.empty() || (others != nullptr && others->boxes_.empty())) return found;
-        const auto check = [&] {
-            if (stopped != nullptr && *stopped) throw Interrupted();
-        };
-        const std::size_t axis =
-            others != nullptr && others->boxes_.size() > boxes_.size() ? others->longest_axis() : longest_axis();
-        const std::vector<std::uint32_t> own = by_begin(axis);
-        if (others == nullptr) {
-            for (std::size_t i = 0; i < own.size(); ++i) {
-                check();
-                for (std::size_t k = i + 1; k < own.size() && boxes_[own[k]].low[axis] <= boxes_[own[i]].high[axis];
-                     ++k) {
-                    const Rows rows = std::minmax(own[i], own[k]);
-                    if (boxes_[own[i]].touches(boxes_[own[k]]) && !is_allowed(rows)) found.push_back(rows);
-                }
+            double low = infinite, high = -infinite, size = 0;
+            for (const Box& box : boxes_) {
+                low = std::min(low, box.low[k]);
+                high = std::max(high, box.high[k]);
+                size += box.high[k] - box.low[k];
             }
-            return found;
+            spread[k] = (high - low) / std::max(size, std::numeric_limits<double>::min());
         }
-        // Of two boxes that touch one begins in the other.
-        const std::vector<std::uint32_t> theirs = others->by_begin(axis);
-        const auto begin_of = [axis](const PlacedList& list) {
-            return [&list, axis](std::uint32_t i) { return list.boxes_[i].low[axis]; };
-        };
-        for (const std::uint32_t i : own) {
-            check();
-            const Box& box = boxes_[i];
-            for (auto at = std::ranges::lower_bound(theirs, box.low[axis], {}, begin_of(*others));
-                 at != theirs.end() && others->boxes_[*at].low[axis] <= box.high[axis]; ++at)
-                if (box.touches(others->boxes_[*at])) found.emplace_back(i, *at);
+        return static_cast<std::size_t>(std::ranges::max_element(spread) - spread.begin());
+    }
+    double low_of(std::uint32_t row, std::size_t axis) const { return boxes_[row].low[axis]; }
+    void sort_along(std::size_t axis) {
+        if (sorted_along_ == axis) return;
+        order_.resize(boxes_.size());
+        std::iota(order_.begin(), order_.end(), 0u);
+        std::ranges::sort(order_, {}, [&](std::uint32_t i) { return std::pair(low_of(i, axis), i); });
+        sorted_along_ = axis;
+    }
+    /// Both lists along the axis that it returns: that of the longer one, which moves less.
+    std::size_t sort(PlacedList* others) {
+        PlacedList& longer = others != nullptr && others->boxes_.size() > boxes_.size() ? *others : *this;
+        if (longer.sorted_along_ == none) longer.sort_along(longer.widest_axis());
+        const std::size_t axis = longer.sorted_along_;
+        sort_along(axis);
+        if (others != nullptr) others->sort_along(axis);
+        return axis;
+    }
+
+    /// Boxes that a sweep begins at: of two that are near one begins in the other.
+    std::size_t places(const PlacedList* others) const {
+        if (others == nullptr) return boxes_.size();
+        return boxes_.empty() || others->boxes_.empty() ? 0 : boxes_.size() + others->boxes_.size();
+    }
+    /// Lists pairs whose boxes are at most `reach` apart, from that place of the sweep on until there are many; returns
+    /// where to go on. stopped: by Ctrl-C; null: never.
+    std::size_t find_near(const PlacedList* others, std::size_t axis, std::size_t at, double reach,
+                          std::vector<Near>& found, const std::atomic<bool>* stopped) const {
+        constexpr std::size_t many = 1 << 18;
+        found.clear();
+        const std::size_t count = boxes_.size();
+        for (; at < places(others) && found.size() < many; ++at) {
+            if (stopped != nullptr && *stopped) throw Interrupted();
+            const bool from_own = at < count;
+            const PlacedList& here = from_own ? *this : *others;
+            const PlacedList& there = others != nullptr && !from_own ? *this : or_own(others);
+            const std::uint32_t row = here.order_[from_own ? at : at - count];
+            const Box& box = here.boxes_[row];
+            const auto begin_of = [&](std::uint32_t i) { return there.low_of(i, axis); };
+            auto next = there.order_.begin() + static_cast<std::ptrdiff_t>(at + 1);
+            if (others != nullptr) { // what begins where this one does comes up once
+                next = from_own ? std::ranges::lower_bound(there.order_, box.low[axis], {}, begin_of)
+                                : std::ranges::upper_bound(there.order_, box.low[axis], {}, begin_of);
+            }
+            for (; next != there.order_.end() && begin_of(*next) <= box.high[axis] + reach; ++next) {
+                const double apart = box.apart(there.boxes_[*next]);
+                if (!(apart <= reach)) continue;
+                const Rows rows = others == nullptr ? Rows(std::minmax(row, *next))
+                                  : from_own        ? Rows(row, *next)
+                                                    : Rows(*next, row);
+                found.push_back({apart, rows});
+            }
         }
-        for (const std::uint32_t k : theirs) {
-            check();
-            const Box& box = others->boxes_[k];
-            for (auto at = std::ranges::upper_bound(own, box.low[axis], {}, begin_of(*this));
-                 at != own.end() && boxes_[*at].low[axis] <= box.high[axis]; ++at)
-                if (box.touches(boxes_[*at])) found.emplace_back(*at, k);
+        return at;
+    }
+    /// Of the least distance, by boxes that are next to each other.
+    double upper_bound_of(const PlacedList* others, std::size_t axis, std::int64_t but) const {
+        double least = infinite;
+        const PlacedList& there = or_own(others);
+        for (std::size_t at = 0; at < order_.size(); ++at) {
+            const std::uint32_t row = order_[at];
+            const auto begin_of = [&](std::uint32_t i) { return there.low_of(i, axis); };
+            auto next = order_.begin() + static_cast<std::ptrdiff_t>(at + 1);
+            if (others != nullptr) next = std::ranges::lower_bound(there.order_, low_of(row, axis), {}, begin_of);
+            for (int tries = 0; tries < 2 && next != there.order_.begin() && others != nullptr; ++tries) --next;
+            for (int tries = 0; tries < 4 && next != there.order_.end(); ++tries, ++next)
+                if (others == nullptr || *next != but)
+                    least = std::min(least, boxes_[row].farthest(there.boxes_[*next]));
         }
-        return found;
+        return least;
+    }
+    /// Nearest boxes first, a few at once: what is found spares most of the others. near: sorted.
+    void look(const PlacedList* others, std::span<const Near> near, double& reach, Near& best) {
+        constexpr std::size_t alone = 64;
+        std::vector<double> found;
+        for (std::size_t size = 4; !near.empty() && best.distance > 0; size = std::min<std::size_t>(2 * size, 1024)) {
+            std::size_t count = 0;
+            while (count < std::min(size, near.size()) && near[count].distance <= reach) ++count;
+            if (count == 0) return;
+            found.assign(count, infinite);
+            asked_ += count;
+            const auto ask = [&](std::size_t n) {
+                const auto& [i, k] = near[n].rows;
+                const auto least =
+                    distance(*shapes_[i], poses_[i], *or_own(others).shapes_[k], or_own(others).poses_[k], reach);
+                if (least) found[n] = least->distance;
+            };
+            if (size <= alone) {
+                const WithoutGil without_gil;
+                for (std::size_t n = 0; n < count; ++n) ask(n);
+            } else {
+                for_each_item(count, 0, "pair", ask);
+            }
+            const auto n = static_cast<std::size_t>(std::ranges::min_element(found) - found.begin());
+            if (found[n] < best.distance) best = {found[n], near[n].rows};
+            reach = std::min(reach, best.distance);
+            near = near.subspan(count);
+        }
     }
 
     std::vector<std::shared_ptr<Shape>> shapes_;
     std::vector<Pose> poses_;
     std::vector<Box> boxes_;
     std::vector<Rows> allowed_;
+    std::vector<std::uint32_t> order_; ///< rows by where their boxes begin
+    std::size_t sorted_along_ = none, asked_ = 0;
 };
 
 } // namespace
@@ -192,9 +311,12 @@ void bind_placed(nb::module_& m) {
     nb::class_<PlacedList>(m, "PlacedList")
         .def(nb::init<std::vector<std::shared_ptr<Shape>>, const Matrices&>(), "shapes"_a, "poses"_a)
         .def("set_pose", &PlacedList::set_pose, "row"_a, "pose"_a)
+        .def_prop_ro("poses", &PlacedList::poses, nb::rv_policy::automatic)
+        .def_prop_ro("asked", &PlacedList::asked)
         .def("set_allowed", &PlacedList::set_allowed, "pairs"_a)
         .def("any", &PlacedList::any, nb::arg("others").none())
-        .def("all", &PlacedList::all, nb::arg("others").none());
+        .def("all", &PlacedList::all, nb::arg("others").none())
+        .def("nearest", &PlacedList::nearest, nb::arg("others").none(), "but"_a = -1);
 }
 
 } // namespace raycontact::python

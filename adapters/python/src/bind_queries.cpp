@@ -94,8 +94,8 @@ nb::tuple all_contact_patches(const PlacedPairs& pairs) {
     return nb::make_tuple(pair.take(), area.take(), volume.take(), depth.take(), centre.take(), normal.take());
 }
 
-/// Each pair's bodies are 2 i and 2 i + 1 of one scene that lives for the call. Pairs go in blocks, between which
-/// Ctrl-C counts.
+/// Each pair's bodies are 2 i and 2 i + 1 of one scene that lives for the call. Pairs go in blocks, with their bodies,
+/// between which Ctrl-C counts.
 ReadOnlyArray collide(const PlacedPairs& pairs, const nb::dict& words) {
     Settings settings = settings_from(words, {});
     settings.execution.threads = pairs.threads;
@@ -104,15 +104,14 @@ ReadOnlyArray collide(const PlacedPairs& pairs, const nb::dict& words) {
         WithoutGil without_gil;
         Scene scene(settings);
         std::vector<Pair> bodies;
-        bodies.reserve(pairs.count);
-        for (std::size_t i = 0; i < pairs.count; ++i) {
-            const BodyId a = scene.add(of_item(pairs.a, i), of_item(pairs.pose_a, i));
-            bodies.emplace_back(a, scene.add(of_item(pairs.b, i), of_item(pairs.pose_b, i)));
-        }
         constexpr std::size_t block = 4096;
         for (std::size_t begin = 0; begin < pairs.count && !is_ending(); begin += block) {
-            const std::size_t size = std::min(block, pairs.count - begin);
-            const auto contacts = scene.find_contacts(std::span(bodies).subspan(begin, size));
+            bodies.clear();
+            for (std::size_t i = begin; i < std::min(begin + block, pairs.count); ++i) {
+                const BodyId a = scene.add(of_item(pairs.a, i), of_item(pairs.pose_a, i));
+                bodies.emplace_back(a, scene.add(of_item(pairs.b, i), of_item(pairs.pose_b, i)));
+            }
+            const auto contacts = scene.find_contacts(bodies);
             found->insert(found->end(), contacts.begin(), contacts.end());
             without_gil.check_signals();
         }

@@ -6,9 +6,11 @@
 #include "contact_bytes.h"
 #include "guarded_scene.h"
 #include "settings_words.h"
+#include "single.h"
 #include "without_gil.h"
 
 #include <raycontact/error.h>
+#include <raycontact/query.h>
 
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
@@ -18,8 +20,11 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <memory>
+#include <optional>
 #include <string>
 #include <tuple>
+#include <vector>
 
 namespace raycontact::python {
 
@@ -103,6 +108,143 @@ nb::tuple lost_contacts(GuardedScene& guarded) {
     return nb::make_tuple(array_of(std::move(bodies), {lost.size(), 2}), array_of(std::move(keys), {lost.size()}));
 }
 
+/// The bodies that a query counts. No ids given: all.
+class Chosen {
+public:
+    /// Throws InputError for one that is not in the scene.
+    Chosen(const Scene& scene, const std::optional<Ids>& ids) {
+        if (!ids) return;
+        counts_.emplace();
+        for (const BodyId id : ids_of(*ids)) {
+            scene.pose(id);
+            if (id.slot >= counts_->size()) counts_->resize(std::size_t{id.slot} + 1);
+            (*counts_)[id.slot] = 1;
+        }
+    }
+    bool has(BodyId id) const { return !counts_ || (id.slot < counts_->size() && (*counts_)[id.slot] != 0); }
+    Scene::Wanted wanted() const {
+        if (!counts_) return {};
+        return [this](BodyId id) { return has(id); };
+    }
+
+private:
+    std::optional<std::vector<char>> counts_; ///< by slot
+};
+
+using Shapes = std::vector<std::shared_ptr<Shape>>;
+
+/// Whether any body meets the shape; ends at the first that does.
+bool overlaps_any(const Scene& scene, const Shape& shape, const Pose& pose, const Chosen& chosen) {
+    bool any = false;
+    scene.overlaps(shape, pose, [&](BodyId id) {
+        if (!any && chosen.has(id)) any = intersects(scene.shape(id), scene.pose(id), shape, pose);
+        return false;
+    });
+    return any;
+}
+
+nb::tuple all_overlaps(GuardedScene& guarded, const Shapes& shapes, const Matrices& matrices,
+                       const std::optional<Ids>& ids) {
+    const auto scene = guarded.enter();
+    const Chosen chosen(*scene, ids);
+    const auto poses = poses_of(matrices);
+    std::vector<std::vector<BodyId>> found(poses.size());
+    for_each_item(poses.size(), scene->settings().execution.threads, "shape", [&](std::size_t i) {
+        found[i] = scene->overlaps(*shapes[i % shapes.size()], poses[i], chosen.wanted());
+    });
+    std::vector<std::int64_t> items, bodies;
+    for (std::size_t i = 0; i < found.size(); ++i)
+        for (const BodyId id : found[i]) {
+            items.push_back(static_cast<std::int64_t>(i));
+            bodies.push_back(number_of(id));
+        }
+    const std::size_t n = items.size();
+    return nb::make_tuple(array_of(std::move(items), {n}), array_of(std::move(bodies), {n}));
+}
+
+/// Of each `links` poses in a row: whether any of the shapes meets a body.
+Array any_overlaps(GuardedScene& guarded, const Shapes& shapes, const Matrices& matrices, std::size_t links,
+                   const std::optional<Ids>& ids) {
+    const auto scene = guarded.enter();
+    const Chosen chosen(*scene, ids);
+    const auto poses = poses_of(matrices);
+    AnswerColumn found(poses.size() / links);
+    for_each_item(poses.size() / links, scene->settings().execution.threads, "configuration", [&](std::size_t i) {
+        bool any = false;
+        for (std::size_t k = i * links; k < (i + 1) * links && !any; ++k)
+            any = overlaps_any(*scene, *shapes[k % shapes.size()], poses[k], chosen);
+        found.set(i, any);
+    });
+    return found.take();
+}
+
+// As most callers ask, without NumPy's help (bind_single.cpp); no answer: the Python half looks closer.
+
+std::optional<Array> one_overlaps(GuardedScene& guarded, const Shape& shape, nb::handle given) {
+    const auto pose = pose_of(given);
+    if (!pose) return std::nullopt;
+    const auto scene = guarded.enter();
+    std::vector<BodyId> ids;
+    {
+        const WithoutGil without_gil;
+        ids = scene->overlaps(shape, *pose);
+    }
+    return numbers_of(ids);
+}
+
+/// poses: (l, 4, 4) of l shapes, (4, 4) of one.
+std::optional<bool> one_any_overlaps(GuardedScene& guarded, const std::vector<const Shape*>& shapes, nb::handle given,
+                                     bool is_list) {
+    std::vector<Pose> poses;
+    if (is_list) {
+        Matrices matrices;
+        if (!nb::try_cast<Matrices>(given, matrices, false) || matrices.shape(0) != shapes.size()) return std::nullopt;
+        for (std::size_t i = 0; i < shapes.size(); ++i) {
+            const auto pose = rigid_pose(matrices.data() + 16 * i);
+            if (!pose) return std::nullopt;
+            poses.push_back(*pose);
+        }
+    } else {
+        const auto pose = pose_of(given);
+        if (!pose) return std::nullopt;
+        poses.push_back(*pose);
+    }
+    const auto scene = guarded.enter();
+    const Chosen chosen(*scene, std::nullopt);
+    const WithoutGil without_gil;
+    for (std::size_t i = 0; i < shapes.size(); ++i)
+        if (overlaps_any(*scene, *shapes[i], poses[i], chosen)) return true;
+    return false;
+}
+
+bool set_pose(GuardedScene& guarded, std::int64_t id, nb::handle given) {
+    const auto pose = pose_of(given);
+    if (!pose) return false;
+    const auto scene = guarded.enter();
+    if (!scene->has(id_of(id))) return false;
+    scene->set_pose(id_of(id), *pose);
+    return true;
+}
+
+nb::tuple distances(GuardedScene& guarded, const Ids& given_a, const Ids& given_b, double max) {
+    const auto scene = guarded.enter();
+    const auto a = ids_of(given_a), b = ids_of(given_b);
+    const std::size_t n = items_of({{"a", a.size()}, {"b", b.size()}});
+    LengthColumn least(n);
+    VectorColumn point_a(n), point_b(n);
+    IndexColumn triangle_a(n), triangle_b(n);
+    for_each_item(n, scene->settings().execution.threads, "pair", [&](std::size_t i) {
+        const auto found = scene->distance(of_item(a, i), of_item(b, i), max);
+        if (!found) return;
+        least.set(i, found->distance);
+        point_a.set(i, found->point_a);
+        point_b.set(i, found->point_b);
+        triangle_a.set_triangle(i, found->triangle_a);
+        triangle_b.set_triangle(i, found->triangle_b);
+    });
+    return nb::make_tuple(least.take(), point_a.take(), point_b.take(), triangle_a.take(), triangle_b.take());
+}
+
 UserMemory memory_at(bool is_cuda, std::uint64_t address, std::size_t bytes, std::uint64_t stream) {
     if (is_cuda) return UserMemory::cuda(address, bytes, reinterpret_cast<void*>(stream));
     return UserMemory::host({reinterpret_cast<std::byte*>(address), bytes});
@@ -156,6 +298,7 @@ void bind_scene(nb::module_& m) {
             },
             "ids"_a)
         .def("set_poses", &set_poses, "ids"_a, "poses"_a)
+        .def("set_pose", &set_pose, "id"_a, "pose"_a.none())
         .def("write_contacts", &write_contacts, "columns"_a)
         .def(
             "poses",
@@ -227,54 +370,61 @@ void bind_scene(nb::module_& m) {
             nb::rv_policy::automatic)
         .def(
             "raycast",
-            [](GuardedScene& guarded, const Points& origins, const Points& directions, double max) {
+            [](GuardedScene& guarded, const Points& origins, const Points& directions, double max,
+               const std::optional<Ids>& ids) {
                 const auto scene = guarded.enter();
-                const std::size_t n = origins.shape(0);
-                if (directions.shape(0) != n)
-                    throw InputError("Scene.raycast: " + std::to_string(directions.shape(0)) + " directions for "
-                                     + std::to_string(n) + " origins; give one for each");
+                const Chosen chosen(*scene, ids);
                 const auto from = points_of(origins), along = points_of(directions);
+                const std::size_t n = items_of({{"origins", from.size()}, {"directions", along.size()}});
                 RayHitColumns hits(n);
                 IndexColumn bodies(n);
                 for_each_item(n, scene->settings().execution.threads, "ray", [&](std::size_t i) {
-                    const auto hit = scene->raycast(from[i], along[i], max);
+                    const auto hit = scene->raycast(of_item(from, i), of_item(along, i), max, chosen.wanted());
                     if (!hit) return;
                     hits.set(i, *hit);
                     bodies.set(i, number_of(hit->body));
                 });
                 return nb::make_tuple(hits.take(), bodies.take());
             },
-            "origins"_a, "directions"_a, "max"_a)
+            "origins"_a, "directions"_a, "max"_a, "wanted"_a.none())
+        .def(
+            "raycast_any",
+            [](GuardedScene& guarded, const Points& origins, const Points& directions, double max,
+               const std::optional<Ids>& ids) {
+                const auto scene = guarded.enter();
+                const Chosen chosen(*scene, ids);
+                const auto from = points_of(origins), along = points_of(directions);
+                const std::size_t n = items_of({{"origins", from.size()}, {"directions", along.size()}});
+                AnswerColumn found(n);
+                for_each_item(n, scene->settings().execution.threads, "ray", [&](std::size_t i) {
+                    found.set(i, scene->raycast_any(of_item(from, i), of_item(along, i), max, chosen.wanted()));
+                });
+                return found.take();
+            },
+            "origins"_a, "directions"_a, "max"_a, "wanted"_a.none())
         .def(
             "closest_points",
-            [](GuardedScene& guarded, const Points& given, double max) {
+            [](GuardedScene& guarded, const Points& given, double max, const std::optional<Ids>& ids) {
                 const auto scene = guarded.enter();
+                const Chosen chosen(*scene, ids);
                 const auto places = points_of(given);
                 const std::size_t n = places.size();
                 ClosestPointColumns nearest(n);
                 IndexColumn bodies(n);
                 for_each_item(n, scene->settings().execution.threads, "point", [&](std::size_t i) {
-                    const auto found = scene->closest_point(places[i], max);
+                    const auto found = scene->closest_point(places[i], max, chosen.wanted());
                     if (!found) return;
                     nearest.set(i, *found);
                     bodies.set(i, number_of(found->body));
                 });
                 return nb::make_tuple(nearest.take(), bodies.take());
             },
-            "points"_a, "max"_a)
-        .def(
-            "overlaps",
-            [](GuardedScene& guarded, const Shape& shape, const Matrices& matrices) {
-                const auto scene = guarded.enter();
-                const Pose pose = pose_at(matrices, 0);
-                std::vector<BodyId> ids;
-                {
-                    const WithoutGil without_gil;
-                    ids = scene->overlaps(shape, pose);
-                }
-                return numbers_of(ids);
-            },
-            "shape"_a, "pose"_a);
+            "points"_a, "max"_a, "wanted"_a.none())
+        .def("overlaps", &all_overlaps, "shapes"_a, "poses"_a, "wanted"_a.none())
+        .def("overlaps_any", &any_overlaps, "shapes"_a, "poses"_a, "links"_a, "wanted"_a.none())
+        .def("one_overlaps", &one_overlaps, "shape"_a, "pose"_a.none())
+        .def("one_overlaps_any", &one_any_overlaps, "shapes"_a, "poses"_a.none(), "is_list"_a)
+        .def("distances", &distances, "a"_a, "b"_a, "max"_a);
 }
 
 } // namespace raycontact::python

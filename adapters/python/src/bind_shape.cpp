@@ -10,7 +10,10 @@
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 
+#include <cstdint>
+#include <memory>
 #include <string_view>
+#include <utility>
 
 namespace raycontact::python {
 
@@ -51,6 +54,29 @@ nb::tuple three(const Vec3& v) {
     return nb::make_tuple(v.x, v.y, v.z);
 }
 
+using Coordinates = nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
+using Corners = nb::ndarray<const std::uint32_t, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
+using Indices = nb::ndarray<const std::uint32_t, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+
+/// The shape that had these, bit by bit: equal input makes equal shapes, and what prepare_mesh() found is given.
+std::shared_ptr<Shape> remake_shape(const std::string& name, const Coordinates& vertices, const Corners& triangles,
+                                    const Indices& vertex_index, const Indices& triangle_index,
+                                    const MeshReport& report) {
+    if (vertex_index.shape(0) != vertices.shape(0) || triangle_index.shape(0) != triangles.shape(0))
+        throw InputError("Shape: the pickle has another number of indices than of vertices or triangles");
+    PreparedMesh mesh;
+    mesh.name = name;
+    mesh.vertices = points_of(vertices);
+    mesh.report = report;
+    mesh.triangles.reserve(triangles.shape(0));
+    for (const std::uint32_t* t = triangles.data(); t != triangles.data() + triangles.size(); t += 3)
+        mesh.triangles.push_back({t[0], t[1], t[2]});
+    mesh.vertex_index.assign(vertex_index.data(), vertex_index.data() + vertex_index.size());
+    mesh.triangle_index.assign(triangle_index.data(), triangle_index.data() + triangle_index.size());
+    const WithoutGil without_gil;
+    return std::const_pointer_cast<Shape>(Shape::make(std::move(mesh)));
+}
+
 } // namespace
 
 void bind_shape(nb::module_& m) {
@@ -73,7 +99,9 @@ void bind_shape(nb::module_& m) {
         .def_prop_ro("longest_edge", &Shape::longest_edge)
         .def_prop_ro("memory_bytes", &Shape::memory_bytes)
         .def_prop_ro("mass", [](const Shape& shape) {
-            const Mass mass = mass_of(shape.file_vertices(), shape.triangles());
+            // Of a mesh without an inside the sums mean nothing.
+            const bool holds = shape.report().volume != 0;
+            const Mass mass = holds ? mass_of(shape.file_vertices(), shape.triangles()) : Mass{};
             return nb::make_tuple(mass.volume, three(mass.centre),
                                   array_of(std::vector<double>(mass.inertia.begin(), mass.inertia.end()), {3, 3}));
         });
@@ -90,6 +118,8 @@ void bind_shape(nb::module_& m) {
             return std::const_pointer_cast<Shape>(Shape::make(prepare_mesh(mesh, options), threads));
         },
         "mesh"_a, "repair"_a, "nesting"_a, "holes"_a, "overlaps"_a, "threads"_a);
+    m.def("remake_shape", &remake_shape, "name"_a, "vertices"_a, "triangles"_a, "vertex_index"_a, "triangle_index"_a,
+          "report"_a);
 }
 
 } // namespace raycontact::python

@@ -12,9 +12,11 @@
 #include <nanobind/stl/shared_ptr.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 
 namespace raycontact::python {
 
@@ -22,13 +24,25 @@ namespace {
 
 using Triple = nb::ndarray<const double, nb::shape<3>, nb::c_contig, nb::device::cpu>;
 
+/// Of a float64 array (3,), a list or a tuple of three Python numbers.
 std::optional<Vec3> point_of(nb::handle given) {
-    Triple point;
-    if (!nb::try_cast<Triple>(given, point, false)) return std::nullopt;
-    const double* const p = point.data();
+    std::array<double, 3> p{};
+    if (nb::isinstance<nb::list>(given) || nb::isinstance<nb::tuple>(given)) {
+        const auto list = nb::borrow<nb::sequence>(given);
+        if (nb::len(list) != 3) return std::nullopt;
+        for (std::size_t k = 0; k < 3; ++k) {
+            const nb::object number = list[k];
+            const bool is_number = PyFloat_Check(number.ptr()) || Py_TYPE(number.ptr()) == &PyLong_Type;
+            if (!is_number || !nb::try_cast<double>(number, p[k])) return std::nullopt;
+        }
+    } else {
+        Triple point;
+        if (!nb::try_cast<Triple>(given, point, false)) return std::nullopt;
+        std::copy_n(point.data(), 3, p.begin());
+    }
     constexpr double largest = 1e30;
-    for (std::size_t k = 0; k < 3; ++k)
-        if (!(std::fabs(p[k]) < largest)) return std::nullopt;
+    for (const double x : p)
+        if (!(std::fabs(x) < largest)) return std::nullopt;
     return Vec3{p[0], p[1], p[2]};
 }
 
@@ -78,6 +92,54 @@ std::optional<nb::tuple> one_closest_point(const Shape& shape, nb::handle given_
     return nb::make_tuple(found->distance, array_of(found->point), index_of(found->triangle));
 }
 
+std::optional<nb::tuple> one_signed_distance(const Shape& shape, nb::handle given_pose, nb::handle given_point) {
+    const auto pose = pose_of(given_pose);
+    const auto point = point_of(given_point);
+    if (!pose || !point) return std::nullopt;
+    SignedDistance found;
+    {
+        const WithoutGil without_gil;
+        found = signed_distance(shape, *pose, std::span(&*point, 1), 1)[0];
+    }
+    return nb::make_tuple(found.distance, array_of(found.point), index_of(found.triangle), array_of(found.gradient));
+}
+
+/// A ray that is sound.
+struct Ray {
+    Pose pose;
+    Vec3 origin, direction;
+};
+
+std::optional<Ray> ray_of(nb::handle given_pose, nb::handle given_origin, nb::handle given_direction, double max) {
+    const auto pose = pose_of(given_pose);
+    const auto origin = point_of(given_origin), direction = point_of(given_direction);
+    if (!pose || !origin || !direction || *direction == Vec3{} || !(max >= 0)) return std::nullopt;
+    return Ray{*pose, *origin, *direction};
+}
+
+std::optional<nb::tuple> one_raycast(const Shape& shape, nb::handle pose, nb::handle origin, nb::handle direction,
+                                     double max) {
+    const auto ray = ray_of(pose, origin, direction, max);
+    if (!ray) return std::nullopt;
+    std::optional<RayHit> hit;
+    {
+        const WithoutGil without_gil;
+        hit = raycast(shape, ray->pose, ray->origin, ray->direction, max);
+    }
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    if (!hit)
+        return nb::make_tuple(any_distance, array_of(Vec3{none, none, none}), array_of(Vec3{none, none, none}), -1);
+    return nb::make_tuple(hit->distance, array_of(hit->point), array_of(hit->normal), index_of(hit->triangle));
+}
+
+std::optional<bool> one_raycast_any(const Shape& shape, nb::handle pose, nb::handle origin, nb::handle direction,
+                                    double max) {
+    const auto ray = ray_of(pose, origin, direction, max);
+    if (!ray) return std::nullopt;
+    const WithoutGil without_gil;
+    return raycast_any(shape, ray->pose, ray->origin, ray->direction, max);
+}
+
 std::optional<bool> one_contains(const Shape& shape, nb::handle given_pose, nb::handle given_point) {
     const auto pose = pose_of(given_pose);
     const auto point = point_of(given_point);
@@ -93,7 +155,10 @@ std::optional<Pose> pose_of(nb::handle given) {
     if (given.is_none()) return Pose{};
     Matrix matrix;
     if (!nb::try_cast<Matrix>(given, matrix, false)) return std::nullopt;
-    const double* const m = matrix.data();
+    return rigid_pose(matrix.data());
+}
+
+std::optional<Pose> rigid_pose(const double* m) {
     if (m[12] != 0 || m[13] != 0 || m[14] != 0 || m[15] != 1) return std::nullopt;
     const Pose pose{{m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10]}, {m[3], m[7], m[11]}};
     const auto& r = pose.rotation;
@@ -114,10 +179,21 @@ std::optional<Pose> pose_of(nb::handle given) {
 
 void bind_single(nb::module_& m) {
     const auto pose = [](const char* name) { return nb::arg(name).none(); };
+    m.def(
+        "are_rigid",
+        [](const Matrices& matrices) {
+            for (std::size_t i = 0; i < matrices.shape(0); ++i)
+                if (!rigid_pose(matrices.data() + 16 * i)) return false;
+            return true;
+        },
+        "poses"_a);
     m.def("one_intersects", &one_intersects, "a"_a, pose("pose_a"), "b"_a, pose("pose_b"));
     m.def("one_distance", &one_distance, "a"_a, pose("pose_a"), "b"_a, pose("pose_b"), "max"_a);
     m.def("one_closest_point", &one_closest_point, "shape"_a, pose("pose"), "point"_a, "max"_a);
     m.def("one_contains", &one_contains, "shape"_a, pose("pose"), "point"_a);
+    m.def("one_signed_distance", &one_signed_distance, "shape"_a, pose("pose"), "point"_a);
+    m.def("one_raycast", &one_raycast, "shape"_a, pose("pose"), "origin"_a, "direction"_a, "max"_a);
+    m.def("one_raycast_any", &one_raycast_any, "shape"_a, pose("pose"), "origin"_a, "direction"_a, "max"_a);
 }
 
 } // namespace raycontact::python

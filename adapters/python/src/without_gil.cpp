@@ -51,9 +51,10 @@ bool is_there(const struct sigaction& action) {
 bool python_raises() {
     if (PyThread_get_thread_ident() != main_thread) return false;
     try {
-        static const nb::handle handler = nb::object(nb::module_::import_("signal").attr("getsignal")).release();
+        // That of signal tries to make an enumerator of the handler first, which takes microseconds.
+        static const nb::handle handler = nb::object(nb::module_::import_("_signal").attr("getsignal")).release();
         static const nb::handle usual =
-            nb::object(nb::module_::import_("signal").attr("default_int_handler")).release();
+            nb::object(nb::module_::import_("_signal").attr("default_int_handler")).release();
         static const nb::handle number = nb::object(nb::int_(SIGINT)).release();
         return handler(number).is(usual);
     } catch (const nb::python_error&) {
