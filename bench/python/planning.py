@@ -17,6 +17,7 @@ import argparse
 import itertools
 import timeit
 import xml.etree.ElementTree as ET
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -220,15 +221,15 @@ def main():
         configurations = np.array([arm.poses(rng) for _ in range(300)])
         rows = {
             "the shelf": {
-                "Scene.overlaps_any, all at once": lambda: by_scene(arm, things, True),
-                "Scene.overlaps_any": lambda: by_scene(arm, things, False),
-                "CollisionManager": lambda: by_manager(CollisionManager, arm, things, False, allowed),
-                "trimesh with FCL": lambda: by_manager(fcl, arm, things, False, allowed),
-                "coal": lambda: by_coal(arm, things),
+                "Scene.overlaps_any, all at once": partial(by_scene, arm, things, True),
+                "Scene.overlaps_any": partial(by_scene, arm, things, False),
+                "CollisionManager": partial(by_manager, CollisionManager, arm, things, False, allowed),
+                "trimesh with FCL": partial(by_manager, fcl, arm, things, False, allowed),
+                "coal": partial(by_coal, arm, things),
             },
             "the shelf and itself": {
-                "CollisionManager": lambda: by_manager(CollisionManager, arm, things, True, allowed),
-                "trimesh with FCL": lambda: by_manager(fcl, arm, things, True, allowed),
+                "CollisionManager": partial(by_manager, CollisionManager, arm, things, True, allowed),
+                "trimesh with FCL": partial(by_manager, fcl, arm, things, True, allowed),
             },
         }
         for asked, ways in rows.items():

@@ -51,8 +51,8 @@ struct Clash {
     Vec3 point_b;             ///< likewise on that of b
     Vec3 normal;              ///< of that contact, unit, from a to b; near: the way from point_a to point_b; else 0
     std::size_t contacts = 0; ///< how many the two have
-    bool open_a = false; ///< a has no inside, and a depth says how far it reaches into b alone
-    bool open_b = false; ///< likewise b
+    bool open_a = false;      ///< a has no inside, and a depth says how far it reaches into b alone
+    bool open_b = false;      ///< likewise b
     /// About what both share, along the axes, right to some 1e-7 of the smaller part. Where one of them has no inside:
     /// about the curves in which they cross. None: they touch, or are near.
     std::optional<AxisBox> box;

@@ -65,7 +65,7 @@ struct MeshReport {
     std::uint64_t file_vertices = 0;  ///< as in the file
     std::uint64_t file_triangles = 0; ///< as in the file, polygons split
     bool closed = false; ///< every edge has a triangle on both sides (each edge met an even number of times, >= 2)
-    bool solid = false; ///< has an inside: closed and oriented, but walls back to back that hold nothing are not
+    bool solid = false;  ///< has an inside: closed and oriented, but walls back to back that hold nothing are not
     std::uint64_t border_edges = 0;   ///< edges met an odd number of times; 0: closed
     std::uint64_t holes = 0;          ///< spanned ones, as Holes has it
     std::uint64_t spanning = 0;       ///< triangles that span them: not in the file, numbered after its own

@@ -195,8 +195,9 @@ Verdict verdict_of(const MeshReport& report) {
     if (!report.oriented)
         faults.emplace_back("badly wound", "triangles at an edge disagree on which side is out; turn some over");
     if (report.closed && report.oriented && !report.solid)
-        faults.emplace_back("hollow", "walls back to back that hold nothing, so it has no inside; use it as a one-sided "
-                                      "sheet, or give its walls a thickness");
+        faults.emplace_back("hollow",
+                            "walls back to back that hold nothing, so it has no inside; use it as a one-sided "
+                            "sheet, or give its walls a thickness");
     if (report.self_intersecting)
         faults.emplace_back("self-intersecting",
                             "where its surfaces overlap the closest face decides what is inside; unite its parts");

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Each Python program of README, docs/python.md and docs/planning.md runs as it stands, beside the program's samples."""
+"""Each Python program of README and docs runs as it stands, beside the program's samples."""
 
 import os
 import re
