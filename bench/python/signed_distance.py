@@ -24,7 +24,7 @@ os.environ["IGL_NUM_THREADS"] = "1"
 import igl  # noqa: E402 - reads the variable
 import numpy as np  # noqa: E402
 import raycontact as rc  # noqa: E402
-from real_meshes import files_of, has_inside, load, print_table  # noqa: E402
+from real_meshes import files_of, load, print_table  # noqa: E402
 
 SIGNS = {
     "pseudonormal": igl.SIGNED_DISTANCE_TYPE_PSEUDONORMAL,
@@ -151,7 +151,7 @@ def main():
         counts = Counts()
         for file in files_of(folder, options):
             shape = load(file, options.slow)
-            if shape and has_inside(shape.report):
+            if shape and shape.has_inside:
                 counts.add(shape, file, options)
         rows.append([folder.name, *counts.cells()])
     names = ["package", "solids", "points", "off", "igl off", "pseudonormal differs", "winding differs", "we are wrong"]
