@@ -51,6 +51,35 @@ def test_sdf_geoms_have_as_many_contacts_as_their_slots():
 
 
 # A fifth contact of two meshes would be written beyond what MuJoCo has room for.
+@pytest.mark.parametrize("step", [0.001, 0.002])
+@pytest.mark.parametrize("friction", [0.5, 0.02])
+def test_a_nut_holds_by_friction_and_turns_down_without(friction, step):
+    """A thread of 1.5 mm a turn, steep by 1 in 28, and some hundredths of a millimetre of play."""
+    samples = rc.samples()
+    nut_and_bolt = "".join(asset(name, (samples[name].vertices, samples[name].triangles)) for name in ("bolt", "nut"))
+    like = f'type="sdf" friction="{friction}"'
+    made = model(
+        nut_and_bolt,
+        f'<geom mesh="bolt" {like}/><body pos="0 0 0.012"><freejoint/><geom mesh="nut" {like}/></body>',
+        f'timestep="{step}" integrator="implicitfast"',
+    )
+    data, heights, turns = mujoco.MjData(made), [], []
+    for _ in range(round(0.5 / step)):
+        mujoco.mj_step(made, data)
+        heights.append(data.qpos[2])
+        turns.append(2 * np.arctan2(data.qpos[6], data.qpos[3]))
+        assert data.ncon <= 40
+    heights, turns = np.array(heights), np.unwrap(turns)
+    late = slice(len(heights) // 2, None)
+    assert np.abs(data.qpos[:2]).max() < 1e-4
+    if friction > 0.1:
+        assert np.ptp(heights[late]) < 5e-6 and np.ptp(turns[late]) < 0.01
+    else:
+        turned = turns[late][-1] - turns[late][0]
+        assert turned < -0.5
+        assert heights[late][-1] - heights[late][0] == pytest.approx(0.0015 * turned / (2 * np.pi), abs=3e-5)
+
+
 def test_no_more_contacts_than_slots():
     fine = torus(around=64, across=32)
     made = model(

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -302,7 +303,7 @@ TEST(Holes, ClosedWallsBackToBackThatHoldNothingAreASheet) {
                 // A square is the fan of its first corner; the others' fan has the other diagonal.
                 const auto [a, b, c] = mesh.triangles[i];
                 const std::uint32_t d = mesh.triangles[i + 1][2];
-                ASSERT_EQ(mesh.triangles[i + 1], (Triangle{a, c, d}));
+                ASSERT_EQ(mesh.triangles[i + 1], (std::array<std::uint32_t, 3>{a, c, d}));
                 if (same_diagonals)
                     mesh.triangles.insert(mesh.triangles.end(), {{c, b, a}, {d, c, a}});
                 else
