@@ -5,6 +5,8 @@
 #include "shape/mesh_rays.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
 namespace raycontact {
@@ -54,7 +56,10 @@ bool say_the_same(const ManifoldPoint& a, const ManifoldPoint& b) {
 
 void join_patches(std::span<const ManifoldPoint> points, double cosine, std::vector<ManifoldPatch>& patches) {
     std::vector<std::pair<double, std::uint32_t>> order; // by their depths alone: points lie far apart in memory
-    for (std::uint32_t i = 0; i < points.size(); ++i) order.emplace_back(-points[i].depth, i);
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+        const double depth = points[i].depth;
+        order.emplace_back(std::isnan(depth) ? std::numeric_limits<double>::infinity() : -depth, i);
+    }
     std::ranges::sort(order);
     for (const auto& [_, i] : order) {
         const std::size_t home = suitable(points[i], cosine, patches);
@@ -120,15 +125,27 @@ std::vector<std::uint32_t> choose_contacts(std::span<const ManifoldPoint> points
     std::vector<ManifoldPatch> patches;
     join_patches(points, patch_cosine, patches);
     std::vector<std::vector<std::uint32_t>> chosen;
-    std::size_t turns = 0;
-    for (const ManifoldPatch& patch : patches) {
-        chosen.push_back(choose_points(points, patch.points));
-        turns = std::max(turns, chosen.back().size());
-    }
+    for (const ManifoldPatch& patch : patches) chosen.push_back(choose_points(points, patch.points));
+    std::vector<std::size_t> given(patches.size(), 0);
     std::vector<std::uint32_t> order;
-    for (std::size_t turn = 0; turn < turns; ++turn)
-        for (const std::vector<std::uint32_t>& of_patch : chosen)
-            if (turn < of_patch.size() && order.size() < most) order.push_back(of_patch[turn]);
+    const auto give = [&](std::size_t patch) { order.push_back(chosen[patch][given[patch]++]); };
+    const auto depth_of = [&](std::size_t patch) { return points[patches[patch].points.front()].depth; };
+    // What touches gives its first, deepest patches first, for half of the places; the others go by the patches'
+    // depths.
+    const std::size_t firsts = std::min(patches.size(), (most + 1) / 2);
+    for (std::size_t patch = 0; patch < firsts && depth_of(patch) > 0; ++patch) give(patch);
+    const auto share = [&](std::size_t patch) {
+        const double depth = depth_of(patch);
+        return depth > 0 ? std::pair(1, depth / double(given[patch] + 1)) : std::pair(0, -double(given[patch]));
+    };
+    while (order.size() < most) {
+        std::size_t next = patches.size();
+        for (std::size_t patch = 0; patch < patches.size(); ++patch)
+            if (given[patch] < chosen[patch].size() && (next == patches.size() || share(patch) > share(next)))
+                next = patch;
+        if (next == patches.size()) break;
+        give(next);
+    }
     return order;
 }
 

@@ -188,9 +188,14 @@ NearestFace nearest_face(const ShapeData& mesh, const Vec3& point, double enough
 NearestFace nearest_exit(const ShapeData& mesh, const ForeignVertex& own, const NearestFace& known) {
     // 3 degrees: a box that lies a little askew on another leaves by the top, not by a side near its corner.
     constexpr double against = 0.05;
+    // What looks as the face that was hit is the same wall, which triangles may divide anyhow.
+    constexpr double like = 0.98;
+    const Vec3 hit = area_normal(mesh, known.face);
+    const double least_like2 = like * like * dot(hit, hit);
     return nearest_of_faces(mesh, own.point, 0, known, [&](std::uint32_t face) {
         const Vec3 n = area_normal(mesh, face);
         if (dot(n, mesh.corner(face, 0) - own.point) < 0) return false;
+        if (const double product = dot(n, hit); product > 0 && product * product > least_like2 * dot(n, n)) return true;
         const Vec3 turned = rotated_back(own.rotation, n);
         const double least = -against * length(n);
         return any_triangle_at(own.source, own.vertex, [&](std::uint32_t t, std::uint32_t) {

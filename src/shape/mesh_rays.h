@@ -71,8 +71,8 @@ struct ForeignVertex {
     const std::array<double, 9>& rotation;
 };
 
-/// The nearest of the faces by which a vertex can leave: they have it behind them and look against a face at it, by a
-/// cosine above 0.05. No farther than `known`, which is one that counts in any case.
+/// The nearest of the faces by which a vertex can leave: they have it behind them, and look against a face at it, by a
+/// cosine above 0.05, or the way that `known` does, by a cosine above 0.98. No farther than `known`, which was hit.
 NearestFace nearest_exit(const ShapeData& mesh, const ForeignVertex& own, const NearestFace& known);
 
 /// What of a triangle is nearest to a point.

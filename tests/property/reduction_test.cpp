@@ -117,7 +117,7 @@ TEST_P(ReductionOf, KeepsSomeOfAllAndTheDeepestOfEachPair) {
 
 INSTANTIATE_TEST_SUITE_P(Directions, ReductionOf,
                          testing::Values(Direction::reprojected, Direction::refined, Direction::ray),
-                         [](const auto& info) { return std::string(to_string(info.param)); });
+                         [](const auto& of) { return std::string(to_string(of.param)); });
 
 // What a scene has forgotten neither stays nor is any longer known: it is as in a scene that begins there.
 TEST(Reduction, OfForgottenContactsPrefersNone) {

@@ -58,8 +58,8 @@ std::vector<Vec3> normals_at(const Relative& relative, std::uint32_t vertex) {
     return normals;
 }
 
-// The nearest of the triangle that was hit and of all that look against one of the vertex's own and have the vertex
-// behind them, by more than `by` of 1 and of the diagonal.
+// The nearest of the triangle that was hit and of all that have the vertex behind them and look as that one or against
+// one of the vertex's own, by more than `by` of 1 and of the diagonal.
 Exit exit_of(const Solid& target, const Vec3& p, const std::vector<Vec3>& own, std::uint32_t hit, double by) {
     const auto off = [&](std::uint32_t t) {
         const auto& [a, b, c] = target.triangles[t];
@@ -69,7 +69,8 @@ Exit exit_of(const Solid& target, const Vec3& p, const std::vector<Vec3>& own, s
     for (std::uint32_t t = 0; t < target.triangles.size(); ++t) {
         const Vec3 n = target.face_normals[t];
         if (!(dot(n, target.vertices[target.triangles[t][0]] - p) >= 0.01 * by * target.diagonal)
-            || std::ranges::none_of(own, [&](const Vec3& m) { return dot(n, m) < -0.05 - by; }))
+            || (!(dot(n, target.face_normals[hit]) > 0.98 + by)
+                && std::ranges::none_of(own, [&](const Vec3& m) { return dot(n, m) < -0.05 - by; })))
             continue;
         const Vec3 to = off(t);
         if (dot(to, to) < dot(best.off, best.off)) best = {t, to};

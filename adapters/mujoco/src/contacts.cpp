@@ -53,6 +53,33 @@ Point point_of(const ManifoldPoint& found) {
     return {-found.depth, triple(found.position), triple(found.normal)};
 }
 
+/// Whether the boxes of two shapes, along the world's axes, are farther apart than this. MuJoCo asks about geoms whose
+/// spheres meet, as things in a bin and its walls.
+bool are_apart(const Shape& a, const Pose& at_a, const Shape& b, const Pose& at_b, double by) {
+    const auto box_of = [](const Shape& shape, const Pose& pose) {
+        const Vec3 low = shape.box_min(), high = shape.box_max();
+        const std::array middle{0.5 * (low.x + high.x), 0.5 * (low.y + high.y), 0.5 * (low.z + high.z)},
+            half{0.5 * (high.x - low.x), 0.5 * (high.y - low.y), 0.5 * (high.z - low.z)},
+            centre{pose.translation.x, pose.translation.y, pose.translation.z};
+        std::array<std::array<double, 2>, 3> box{}; // the middle, and how far it reaches
+        for (std::size_t i = 0; i < 3; ++i) {
+            box[i] = {centre[i], 0};
+            for (std::size_t k = 0; k < 3; ++k) {
+                box[i][0] += pose.rotation[3 * i + k] * middle[k];
+                box[i][1] += std::fabs(pose.rotation[3 * i + k]) * half[k];
+            }
+        }
+        return box;
+    };
+    const auto one = box_of(a, at_a), two = box_of(b, at_b);
+    for (std::size_t i = 0; i < 3; ++i) {
+        constexpr double rounding = 1 + 1e-12;
+        const double apart = std::fabs(one[i][0] - two[i][0]);
+        if (apart > rounding * (one[i][1] + two[i][1] + by)) return true;
+    }
+    return false;
+}
+
 /// Those that stand for all, in an order that puts the most important first.
 std::size_t choose(const std::vector<ManifoldPoint>& found, std::span<Point> points) {
     const std::vector<std::uint32_t> chosen = choose_contacts(found, points.size());
@@ -116,6 +143,7 @@ std::size_t of_meshes(const Geom& a, const Geom& b, double margin, std::span<Poi
     const auto shape_a = shape_of(a, off_centre), shape_b = shape_of(b, off_centre);
     const double size = std::min(diagonal(*shape_a), diagonal(*shape_b));
     const double asked = margin;
+    if (are_apart(*shape_a, pose_of(a), *shape_b, pose_of(b), asked)) return 0;
     margin = std::min(margin, largest_margin * size);
     PairScene& own =
         scene_of({shape_a, shape_b, a.number, b.number, margin > 0, static_cast<std::uint32_t>(points.size())});

@@ -86,11 +86,33 @@ TEST(ChoosePoints, OneOfThoseThatSayTheSame) {
     EXPECT_EQ(chosen_of(points).size(), 2u);
 }
 
+TEST(ChooseContacts, AreSharedOutByTheDepthsOfPatches) {
+    const auto chosen = [](double floor, double wall) {
+        std::vector<ManifoldPoint> points;
+        for (int k = 0; k < 4; ++k) points.push_back(point(k % 2, k / 2, floor));
+        for (int k = 0; k < 4; ++k) {
+            points.push_back(point(k % 2, k / 2, wall));
+            points.back().normal = {1, 0, 0};
+        }
+        const std::vector<std::uint32_t> four = choose_contacts(points, 4);
+        EXPECT_EQ(four.size(), 4u);
+        EXPECT_EQ(choose_contacts(points, 100).size(), 8u);
+        return std::ranges::count_if(four, [](std::uint32_t i) { return i < 4; });
+    };
+    EXPECT_EQ(chosen(0.01, 0.01), 2);
+    EXPECT_EQ(chosen(0.01, 0.004), 3); // the first of each, then 5 and 3.3 before 2
+    EXPECT_EQ(chosen(0.01, 0.0001), 3);
+    EXPECT_EQ(chosen(0.001, 0.01), 1);
+    EXPECT_EQ(chosen(0.001, -0.001), 4); // what does not touch comes after
+    EXPECT_EQ(chosen(-0.001, -0.002), 2);
+}
+
 TEST(ChoosePoints, NumbersThatAreNoneEnd) {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN();
     for (const auto& [at, depth] : {std::pair(nan, 1.0), std::pair(0.0, nan)}) {
         const std::vector<ManifoldPoint> points(9, point(at, at, depth));
         EXPECT_LE(choose_points(points, all_of(points)).size(), 4u);
+        EXPECT_LE(choose_contacts(points, 9).size(), 9u);
     }
 }
 

@@ -73,5 +73,46 @@ TEST(Refined, ACubeOnACubeLeavesUpwards) {
         }
 }
 
+// The foot of a peg in a hole, a little into its wall: its faces look down, so the wall does not look against them, but
+// a ray met the wall, however that is divided, far above.
+TEST(Refined, AWallThatARayMetCountsAsAWhole) {
+    for (const int cells : {1, 8, 64}) {
+        Mesh wall; // the plane x = 0 of a block, in strips along z, with a lid far up
+        for (int i = 0; i <= cells; ++i)
+            for (const double y : {-1.0, 1.0})
+                for (const double x : {0.0, 1.0}) wall.vertices.push_back({x, y, 2.0 * i / cells - 1});
+        const auto at = [](int i, int y, int x) { return static_cast<std::uint32_t>(4 * i + 2 * y + x); };
+        const auto quad = [&](std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+            wall.triangles.push_back({a, b, c});
+            wall.triangles.push_back({a, c, d});
+        };
+        for (int i = 0; i < cells; ++i) {
+            quad(at(i, 0, 0), at(i + 1, 0, 0), at(i + 1, 1, 0), at(i, 1, 0));
+            quad(at(i, 0, 1), at(i, 1, 1), at(i + 1, 1, 1), at(i + 1, 0, 1));
+            quad(at(i, 0, 0), at(i, 0, 1), at(i + 1, 0, 1), at(i + 1, 0, 0));
+            quad(at(i, 1, 0), at(i + 1, 1, 0), at(i + 1, 1, 1), at(i, 1, 1));
+        }
+        quad(at(0, 0, 0), at(0, 1, 0), at(0, 1, 1), at(0, 0, 1));
+        quad(at(cells, 0, 0), at(cells, 0, 1), at(cells, 1, 1), at(cells, 1, 0));
+        ASSERT_TRUE(verdict_of(prepare_mesh(wall).report).good);
+        // The middle of the foot, flat all round, is 0.01 in the wall; the peg leans by 0.03 away from it.
+        const double lean = 0.03;
+        Mesh peg;
+        peg.vertices = {{0, 0, 0}, {0.3, 0.3, 0}, {-0.3, 0.3, 0}, {-0.3, -0.3, 0}, {0.3, -0.3, 0}, {0, 0, 0.9}};
+        peg.triangles = {{0, 2, 1}, {0, 3, 2}, {0, 4, 3}, {0, 1, 4}, {5, 1, 2}, {5, 2, 3}, {5, 3, 4}, {5, 4, 1}};
+        Pose pose;
+        pose.rotation = {std::cos(lean), 0, -std::sin(lean), 0, 1, 0, std::sin(lean), 0, std::cos(lean)};
+        pose.translation = {0.01, 0.05, -0.5};
+        bool found = false;
+        for (const Contact& contact : vertices_of(peg, pose, wall, Direction::refined)) {
+            if (contact.feature.source != Side::a || contact.feature.source_index() != 0) continue;
+            found = true;
+            EXPECT_NEAR(contact.depth, 0.01, 1e-6) << cells;
+            EXPECT_NEAR(contact.normal.x, 1, 1e-6) << cells;
+        }
+        EXPECT_TRUE(found) << cells;
+    }
+}
+
 } // namespace
 } // namespace raycontact
