@@ -53,8 +53,8 @@ RAYCONTACT_API std::vector<std::uint32_t> choose_points(std::span<const Manifold
                                                         std::span<const std::uint32_t> patch);
 
 /// Of all contacts of a pair those that stand for all, no more than `most`, the most important first: points of patches
-/// of like normals (a cosine of 0.8), half of them the deepest of each, the others by the patches' depths (D'Hondt).
-/// What Settings::max_contacts_per_pair keeps of a pair that had none in the step before.
+/// of like normals (a cosine of 0.8), shared out by the patches' depths (D'Hondt). What Settings::max_contacts_per_pair
+/// keeps of a pair that had none in the step before.
 RAYCONTACT_API std::vector<std::uint32_t> choose_contacts(std::span<const ManifoldPoint> points, std::size_t most);
 
 } // namespace raycontact

@@ -129,13 +129,9 @@ std::vector<std::uint32_t> choose_contacts(std::span<const ManifoldPoint> points
     std::vector<std::size_t> given(patches.size(), 0);
     std::vector<std::uint32_t> order;
     const auto give = [&](std::size_t patch) { order.push_back(chosen[patch][given[patch]++]); };
-    const auto depth_of = [&](std::size_t patch) { return points[patches[patch].points.front()].depth; };
-    // What touches gives its first, deepest patches first, for half of the places; the others go by the patches'
-    // depths.
-    const std::size_t firsts = std::min(patches.size(), (most + 1) / 2);
-    for (std::size_t patch = 0; patch < firsts && depth_of(patch) > 0; ++patch) give(patch);
+    // By the patches' depths (D'Hondt); what does not touch yet takes turns after that.
     const auto share = [&](std::size_t patch) {
-        const double depth = depth_of(patch);
+        const double depth = points[patches[patch].points.front()].depth; // the deepest began it
         return depth > 0 ? std::pair(1, depth / double(given[patch] + 1)) : std::pair(0, -double(given[patch]));
     };
     while (order.size() < most) {

@@ -30,13 +30,21 @@ bool is_same(const Contact& a, const Contact& b) {
            && (by_ray || (a.normal == b.normal && a.depth == b.depth));
 }
 
-// Refines contacts of a pair until the deepest is known; no other is deeper than it then, but rays may lead far beyond
-// the nearest way out. Their depths say the most that they can be.
-void find_deepest(const Refiner& refiner, std::span<Contact> contacts) {
+// Whether the last step kept it. Of contacts in their order: `old` goes with them.
+bool was_kept(const Contact& contact, std::span<const Contact>::iterator& old, std::span<const Contact> previous) {
+    while (old != previous.end() && order_of(*old) < order_of(contact)) ++old;
+    return old != previous.end() && order_of(*old) == order_of(contact);
+}
+
+// Refines contacts of a pair until the deepest is known, and those that have an advantage as they were kept before; no
+// other is deeper then, but rays may lead far beyond the nearest way out. Their depths say the most that they can be.
+void find_deepest(const Refiner& refiner, std::span<const Contact> previous, std::span<Contact> contacts) {
     std::vector<std::pair<float, std::uint32_t>> most; // a heap, the deepest first
     float deepest = 0;
+    auto old = previous.begin();
     for (std::uint32_t i = 0; i < contacts.size(); ++i) {
         Contact& contact = contacts[i];
+        if (was_kept(contact, old, previous) && Refiner::awaits(contact)) refiner.refine(contact);
         if (Refiner::awaits(contact))
             most.emplace_back(static_cast<float>(refiner.most_depth(contact)), i);
         else
@@ -83,8 +91,7 @@ void ContactReducer::rank(std::vector<ManifoldPoint>& points, std::span<const Pl
     auto old = previous.begin();
     for (const Contact& contact : contacts) {
         ManifoldPoint& point = points.emplace_back(point_of(contact, place));
-        while (old != previous.end() && order_of(*old) < order_of(contact)) ++old;
-        point.present = old != previous.end() && order_of(*old) == order_of(contact);
+        point.present = was_kept(contact, old, previous);
     }
     std::ranges::fill(ranks, not_chosen);
     std::uint32_t rank = 0;
@@ -124,7 +131,7 @@ void ContactReducer::run(Executor& executor, const Settings& settings, std::span
             const auto own = std::span(contacts).subspan(begin, next - begin);
             if (settings.direction == Direction::refined) {
                 const auto [a, b] = pair_of(own.front());
-                find_deepest(Refiner(bodies[a], bodies[b]), own);
+                find_deepest(Refiner(bodies[a], bodies[b]), last.kept.of({a, b}), own);
             }
             // A budget is shared out by ranks.
             if (settings.max_contacts == 0 && choose_as_before(last, own, ranks)) continue;

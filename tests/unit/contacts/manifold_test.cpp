@@ -100,9 +100,9 @@ TEST(ChooseContacts, AreSharedOutByTheDepthsOfPatches) {
         return std::ranges::count_if(four, [](std::uint32_t i) { return i < 4; });
     };
     EXPECT_EQ(chosen(0.01, 0.01), 2);
-    EXPECT_EQ(chosen(0.01, 0.004), 3); // the first of each, then 5 and 3.3 before 2
-    EXPECT_EQ(chosen(0.01, 0.0001), 3);
-    EXPECT_EQ(chosen(0.001, 0.01), 1);
+    EXPECT_EQ(chosen(0.01, 0.004), 3); // 10, 5, 4, 3.3
+    EXPECT_EQ(chosen(0.01, 0.001), 4);
+    EXPECT_EQ(chosen(0.001, 0.01), 0);
     EXPECT_EQ(chosen(0.001, -0.001), 4); // what does not touch comes after
     EXPECT_EQ(chosen(-0.001, -0.002), 2);
 }
