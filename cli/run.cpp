@@ -210,6 +210,7 @@ void warn_if_open(const SceneDescription& scene, const BodyStart& body) {
     const raycontact::MeshReport& report = shape.report();
     if (report.solid) return;
     std::string what = "badly wound: faces at an edge disagree on which side is out; turn some over";
+    if (report.closed && report.oriented) what = "hollow: walls back to back that hold nothing, which bodies pass";
     if (!report.closed) {
         what = fmt::format("open, with {}: bodies that come from behind its faces pass it",
                            counted(report.border_edges, "border edge", "border edges"));

@@ -45,8 +45,7 @@ Vec3 get_vector(ByteSource& from) {
     return v;
 }
 
-/// What is true or false of a mesh, a bit each. `checked` and `solid` are recorded as their
-/// opposites.
+/// What is true or false of a mesh, a bit each. `checked` and `solid` are recorded as their opposites.
 constexpr std::pair<bool MeshReport::*, std::uint32_t> flags[] = {{&MeshReport::closed, 1},
                                                                   {&MeshReport::manifold, 2},
                                                                   {&MeshReport::oriented, 4},

@@ -125,6 +125,7 @@ std::vector<std::uint32_t> choose_contacts(std::span<const ManifoldPoint> points
     std::vector<ManifoldPatch> patches;
     join_patches(points, patch_cosine, patches);
     std::vector<std::vector<std::uint32_t>> chosen;
+    chosen.reserve(patches.size());
     for (const ManifoldPatch& patch : patches) chosen.push_back(choose_points(points, patch.points));
     std::vector<std::size_t> given(patches.size(), 0);
     std::vector<std::uint32_t> order;

@@ -23,8 +23,8 @@ ManifoldPoint point_of(const Contact& contact, double place) {
 }
 
 // The length of a ray tells where the other body is, whichever face of it the contact is refined to.
-bool is_same(const Contact& a, const Contact& b) {
-    const bool by_ray = a.feature.kind == FeatureKind::vertex;
+bool is_same(const Contact& a, const Contact& b, Direction direction) {
+    const bool by_ray = direction == Direction::refined && a.feature.kind == FeatureKind::vertex;
     return order_of(a) == order_of(b) && a.body_a == b.body_a && a.body_b == b.body_b && a.ray_length == b.ray_length
            && a.weight == b.weight && a.point() == b.point()
            && (by_ray || (a.normal == b.normal && a.depth == b.depth));
@@ -36,8 +36,7 @@ bool was_kept(const Contact& contact, std::span<const Contact>::iterator& old, s
     return old != previous.end() && order_of(*old) == order_of(contact);
 }
 
-// Refines contacts of a pair until the deepest is known, and those that have an advantage as they were kept before; no
-// other is deeper then, but rays may lead far beyond the nearest way out. Their depths say the most that they can be.
+// Refines contacts of a pair until the deepest is known, and those that have an advantage as they were kept before.
 void find_deepest(const Refiner& refiner, std::span<const Contact> previous, std::span<Contact> contacts) {
     std::vector<std::pair<float, std::uint32_t>> most; // a heap, the deepest first
     float deepest = 0;
@@ -58,11 +57,10 @@ void find_deepest(const Refiner& refiner, std::span<const Contact> previous, std
         refiner.refine(contact);
         deepest = std::max(deepest, contact.depth);
     }
-    for (const auto& [depth, i] : std::span(most).first(left)) contacts[i].depth = std::min(contacts[i].depth, depth);
 }
 
 // Gives a pair's contacts the choice of the last step, if they are what the pair had.
-bool choose_as_before(const ContactReducer::Last& last, std::span<const Contact> contacts,
+bool choose_as_before(const ContactReducer::Last& last, Direction direction, std::span<const Contact> contacts,
                       std::span<std::uint32_t> ranks) {
     if (!last.has_settings) return false;
     const SlotPair pair = pair_of(contacts.front());
@@ -71,8 +69,8 @@ bool choose_as_before(const ContactReducer::Last& last, std::span<const Contact>
     auto stays = kept.begin();
     auto goes = left_out.begin();
     for (std::size_t i = 0; i < contacts.size(); ++i) {
-        const bool chosen = stays != kept.end() && is_same(*stays, contacts[i]);
-        if (!chosen && (goes == left_out.end() || !is_same(*goes, contacts[i]))) return false;
+        const bool chosen = stays != kept.end() && is_same(*stays, contacts[i], direction);
+        if (!chosen && (goes == left_out.end() || !is_same(*goes, contacts[i], direction))) return false;
         ++(chosen ? stays : goes);
         ranks[i] = chosen ? 0 : not_chosen;
     }
@@ -134,7 +132,7 @@ void ContactReducer::run(Executor& executor, const Settings& settings, std::span
                 find_deepest(Refiner(bodies[a], bodies[b]), last.kept.of({a, b}), own);
             }
             // A budget is shared out by ranks.
-            if (settings.max_contacts == 0 && choose_as_before(last, own, ranks)) continue;
+            if (settings.max_contacts == 0 && choose_as_before(last, settings.direction, own, ranks)) continue;
             rank(points, bodies, last.kept, own, ranks);
             for (std::uint32_t& one : ranks)
                 if (one >= most_of_pair) one = not_chosen;

@@ -35,16 +35,13 @@ Refiner::Met Refiner::met(const Contact& contact) const {
     Met met{source, target, relative_[side], {}, NONE, {}, 0};
     met.vertex = static_cast<std::uint32_t>(place_of(source.mesh.vertex_index, contact.feature.source_index()));
     met.point = transform_point(met.relative, source.point(met.vertex));
-    // The pieces of a triangle that parts cut are named alike: the ray met the nearest.
     const std::vector<std::uint32_t>& faces = target.mesh.triangle_index;
     const std::uint32_t hit = contact.feature.other_index();
-    for (std::size_t i = place_of(faces, hit); i < faces.size() && faces[i] == hit; ++i) {
-        const auto face = static_cast<std::uint32_t>(i);
-        const double distance = length(nearest_on(target, met.point, face).point - met.point);
-        if (met.face != NONE && distance >= met.distance) continue;
-        met.face = face;
-        met.distance = distance;
-    }
+    const std::size_t first = place_of(faces, hit);
+    met.face = static_cast<std::uint32_t>(first);
+    // The pieces of a triangle that parts cut are named alike: the nearest stands for the one that was met.
+    if (first + 1 < faces.size() && faces[first + 1] == hit) met.face = nearest_piece(target, met.point, hit).face;
+    met.distance = length(nearest_on(target, met.point, met.face).point - met.point);
     return met;
 }
 

@@ -228,11 +228,12 @@ public:
         return false;
     }
 
-    /// is_solid: it is known to be one. repaired: no triangle is there twice.
+    /// is_solid: it is known to be one. repaired: doubled triangles are gone.
     PreparedMesh finish(bool is_solid, bool repaired, Check check) {
         fill_report(prepared_, edges_);
         MeshReport& found = prepared_.report;
-        if (repaired && !is_solid && found.solid) // walls back to back that hold nothing are closed, too
+        // Walls back to back that hold nothing are closed, too; faces that coincide inside a solid say nothing.
+        if (repaired && !is_solid && found.solid && std::fabs(found.volume) < 1e-9 * found.area * diagonal())
             found.solid = raycontact::is_solid(prepared_, prepared_.triangles.size(), surface_->tree(), executor_);
         if (!found.solid) found.volume = 0;
         prepared_.report.outward = is_solid;

@@ -185,6 +185,11 @@ NearestFace nearest_face(const ShapeData& mesh, const Vec3& point, double enough
     return found.face == NONE ? NearestFace() : found;
 }
 
+NearestFace nearest_piece(const ShapeData& mesh, const Vec3& point, std::uint32_t file_triangle) {
+    return nearest_of_faces(mesh, point, 0, {},
+                            [&](std::uint32_t face) { return mesh.mesh.triangle_index[face] == file_triangle; });
+}
+
 NearestFace nearest_exit(const ShapeData& mesh, const ForeignVertex& own, const NearestFace& known) {
     // 3 degrees: a box that lies a little askew on another leaves by the top, not by a side near its corner.
     constexpr double against = 0.05;

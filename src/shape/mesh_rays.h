@@ -63,6 +63,9 @@ struct NearestFace {
 NearestFace nearest_face(const ShapeData& mesh, const Vec3& point, double enough,
                          double bound = std::numeric_limits<double>::infinity());
 
+/// The nearest of the pieces into which a triangle of the file was cut.
+NearestFace nearest_piece(const ShapeData& mesh, const Vec3& point, std::uint32_t file_triangle);
+
 /// A vertex of another mesh, `source`, that is turned by `rotation`.
 struct ForeignVertex {
     Vec3 point;

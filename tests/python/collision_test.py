@@ -2,6 +2,7 @@
 """raycontact.collision: the collision manager of trimesh."""
 
 import gc
+import threading
 import tracemalloc
 import weakref
 from collections import namedtuple
@@ -766,9 +767,50 @@ class TestBroadPhase:
         assert manager.in_collision_internal(return_names=True)[1] == {(2, 3), (0, 5)}
         with pytest.raises(ValueError, match="object 2: transform: is not rigid"):
             manager.set_transform(2, np.diag([2.0, 2, 2, 1]))
+        with pytest.raises(ValueError, match="object 2: transform: is None"):
+            manager.set_transform(2, None)
         with pytest.raises(ValueError, match="object 9: is not in the manager"):
             manager.set_transform(9, np.eye(4))
         assert manager.in_collision_internal(return_names=True)[1] == {(2, 3), (0, 5)}
+
+    def test_allowed_pairs_are_left_out_of_distances_too(self):
+        manager, cube = CollisionManager(), rc.Shape(box())
+        for i, x in enumerate((0, 1, 2.5, 6)):  # the first two touch
+            manager.add_object(i, cube, at(x, 0, 0))
+        assert manager.min_distance_internal(return_names=True) == (0, (0, 1))
+        manager.allow_collision(0, 1)
+        assert manager.min_distance_internal(return_names=True) == (0.5, (1, 2))
+        assert manager.min_distance_internal(0, return_names=True) == (1.5, (0, 2))
+        manager.allow_collision(1, 2)
+        assert manager.min_distance_internal(1, return_names=True) == (4, (1, 3))
+        manager.allow_collision(0, 1, False)
+        assert manager.min_distance_internal(1, return_names=True) == (0, (0, 1))
+
+    def test_two_threads_may_ask_one_manager(self):
+        """Each question sorts along another axis."""
+        rng = np.random.default_rng(3)
+        managers, cube = [], rc.Shape(box())
+        for spread in ((60, 1, 1), (1, 60, 1), (1, 1, 60)):
+            managers.append(CollisionManager())
+            for i in range(300):
+                managers[-1].add_object(i, cube, at(*(rng.uniform(0, 1, 3) * spread)))
+        small = CollisionManager()
+        for i in range(40):
+            small.add_object(i, cube, at(*rng.uniform(0, 30, 3)))
+        wanted = [small.in_collision_other(other, return_names=True) for other in managers]
+        faults = []
+
+        def ask(k):
+            for _ in range(60):
+                if small.in_collision_other(managers[k], return_names=True) != wanted[k]:
+                    faults.append(k)
+
+        threads = [threading.Thread(target=ask, args=(k,)) for k in range(3)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        assert not faults
 
     def test_thousands_of_objects_take_no_square_of_memory(self):
         rng = np.random.default_rng(0)

@@ -224,6 +224,15 @@ def test_overlaps_of_batches_are_those_of_trying_everything(shelf, ring, bracket
     assert not scene.overlaps_any(links, poses, wanted=[]).any() and not len(scene.overlaps(ring, wanted=[]))
 
 
+def test_a_list_of_links_has_a_pose_for_each(shelf, torus):
+    scene, poses = shelf[0], helpers.random_poses(5, 1)
+    for links in ([torus], [torus, torus]):
+        with pytest.raises(ValueError, match=f"give poses .*{len(links)}, 4, 4|do not fit"):
+            scene.overlaps_any(links, poses)
+    with pytest.raises(ValueError, match="poses: is None"):
+        scene.set_poses(shelf[1][0], None)
+
+
 def test_overlaps_of_nothing(shelf, torus):
     scene = shelf[0]
     assert scene.overlaps_any([], None) is False and len(scene.overlaps([]).item) == 0

@@ -495,6 +495,7 @@ std::shared_ptr<const Shape> stretch_shape(const Shape& shape, const Stretch& s,
     mesh.report.file_triangles = shape.report().file_triangles;
     mesh.report.holes = shape.report().holes;
     mesh.report.spanning = shape.report().spanning;
+    mesh.report.solid = mesh.report.solid && shape.report().solid; // what holds nothing is not looked at as it is
     mesh.name = std::move(plain.name);
     mesh.vertices = std::move(plain.vertices);
     mesh.triangles = std::move(plain.triangles);

@@ -73,9 +73,9 @@ bool are_apart(const Shape& a, const Pose& at_a, const Shape& b, const Pose& at_
     };
     const auto one = box_of(a, at_a), two = box_of(b, at_b);
     for (std::size_t i = 0; i < 3; ++i) {
-        constexpr double rounding = 1 + 1e-12;
-        const double apart = std::fabs(one[i][0] - two[i][0]);
-        if (apart > rounding * (one[i][1] + two[i][1] + by)) return true;
+        constexpr double rounding = 1e-12;
+        const double reach = one[i][1] + two[i][1] + by, far = std::fabs(one[i][0]) + std::fabs(two[i][0]);
+        if (std::fabs(one[i][0] - two[i][0]) > reach + rounding * (reach + far)) return true;
     }
     return false;
 }

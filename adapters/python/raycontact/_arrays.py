@@ -50,7 +50,7 @@ def as_numbers(value: Any, what: str, kinds: str = "fiu") -> NDArray[Any]:
         else:
             array = np.asarray(value)
     except (TypeError, ValueError, RuntimeError, BufferError) as error:
-        raise InputError(f"{what}: is no array in the host's memory: {error}") from None
+        raise InputError(f"{what}: is no array: {error}") from None
     if array.size == 0 and array.dtype.kind == "f":
         return array  # of an empty list NumPy makes floats
     if array.dtype.kind not in kinds:
@@ -79,7 +79,10 @@ def as_poses(value: Any, what: str, rigid: bool = False) -> NDArray[np.float64]:
         value = value.as_matrix()
     elif isinstance(value, tuple) and len(value) == 2 and _is_rotation(value[0]):
         value = compose(value[1], value[0], f"{what}: ")
-    array = as_numbers(value, what)
+    try:
+        array = as_numbers(value, what)
+    except InputError as error:
+        raise InputError(f"{error}; give (4, 4) or (..., 4, 4), or the tuple (R, t)") from None
     if array.ndim < 2 or array.shape[-2:] != (4, 4):
         if array.size == 0 and array.ndim == 1:
             return np.empty((0, 4, 4))

@@ -8,7 +8,7 @@ docs/python.md says what differs.
 from __future__ import annotations
 
 import weakref
-from collections.abc import Hashable
+from collections.abc import Hashable, Sequence
 from typing import Any, NamedTuple, Optional, TypeVar, cast
 
 import numpy as np
@@ -199,6 +199,8 @@ class CollisionManager:
 
     def set_transform(self, name: Hashable, transform: ArrayLike) -> None:
         """Moves an object: (4, 4), in place of the transform it had. Raises InputError as the class says."""
+        if transform is None:
+            raise InputError(f"object {name!r}: transform: is None; give (4, 4)")
         listed = self._listed or self._list()
         row = listed.rows.get(name)
         if row is None:
@@ -207,8 +209,9 @@ class CollisionManager:
             listed.placed.set_pose(row, _rigid(transform, f"object {name!r}"))
 
     def allow_collision(self, name: Hashable, other: Hashable, allowed: bool = True) -> None:
-        """Leaves a pair of objects out of `in_collision_internal`, as neighbours of an arm that always touch; False:
-        asks it again. trimesh has no such. Raises InputError where there is no such name."""
+        """Leaves a pair of objects out of `in_collision_internal` and `min_distance_internal`, as neighbours of an arm
+        that always touch; False: asks it again. An object that is added anew under its name keeps its pairs. trimesh
+        has no such. Raises InputError where there is no such name."""
         self._find(name), self._find(other)
         (self._allowed.add if allowed else self._allowed.discard)(frozenset((name, other)))
         self._forget_list()
@@ -303,7 +306,8 @@ class CollisionManager:
             own = self._find(name)
             row = mine.rows[name]
             one = _Objects({name: own._replace(pose=mine.placed.poses[row])})
-            least, pair = _nearest(one, mine, but=row)
+            allowed = [mine.rows[other] for pair in self._allowed if name in pair for other in pair]
+            least, pair = _nearest(one, mine, but=[row, *allowed])
             if pair is not None:
                 pair = min(row, pair[1]), max(row, pair[1])
         if pair is not None:
@@ -543,10 +547,10 @@ def _surface(
     return triangles
 
 
-def _nearest(a: _Objects, b: Optional[_Objects], but: int = -1) -> tuple[float, Optional[tuple[int, int]]]:
-    """The least distance of a and b but its row `but`, or within a, and the pair that has it; inf and None without a
+def _nearest(a: _Objects, b: Optional[_Objects], but: Sequence[int] = ()) -> tuple[float, Optional[tuple[int, int]]]:
+    """The least distance of a and b but its rows `but`, or within a, and the pair that has it; inf and None without a
     pair."""
-    least, i, j = a.placed.nearest(None if b is None else b.placed, but)
+    least, i, j = a.placed.nearest(None if b is None else b.placed, list(but))
     return (least, (i, j)) if least < np.inf else (np.inf, None)
 
 

@@ -214,6 +214,8 @@ class Scene:
         Raises InputError naming the place in the list: an id that is not in the scene, a pose that is not finite and
         rigid to 1e-4; and where numbers of ids and poses differ.
         """
+        if poses is None:
+            raise InputError("poses: is None; give (4, 4) or (n, 4, 4)")
         if type(ids) is int and self._core.set_pose(ids, poses):
             return
         numbers, _ = as_ids(ids, "ids")
@@ -514,6 +516,9 @@ class Scene:
         links = 1
         if is_list and not each:
             lead, links = lead[:-1], lead[-1]
+            count = len(shapes)
+            if links != count:
+                raise InputError(f"poses: for {links} shapes, and {count} are given; give poses (..., {count}, 4, 4)")
         if links == 0:
             return np.zeros(lead, np.bool_) if lead else False
         found = self._core.overlaps_any(cores, matrices, links, _wanted(wanted)).view(np.bool_)

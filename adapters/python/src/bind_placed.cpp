@@ -47,13 +47,14 @@ public:
         if (!pose) return false;
         poses_.at(row) = *pose;
         boxes_[row] = box_of(*shapes_[row], *pose);
-        sorted_along_ = none;
+        for (std::vector<std::uint32_t>& order : orders_) order.clear();
+        widest_ = none;
         return true;
     }
     Array poses() const { return matrices_of(poses_); }
     /// Distances of the last nearest().
     std::size_t asked() const { return asked_; }
-    /// Pairs of rows that any() and all() do not ask, the lower one first; sorted.
+    /// Pairs of rows of this list that are not asked, the lower one first.
     void set_allowed(std::vector<Rows> pairs) {
         std::ranges::sort(pairs);
         allowed_ = std::move(pairs);
@@ -69,13 +70,13 @@ public:
                 const WithoutGil without_gil;
                 at = find_near(others, axis, at, 0, near, without_gil.flag());
                 for (std::size_t i = 0; i < std::min(alone, near.size()); ++i)
-                    if (!is_allowed(near[i], others) && meet(near[i], others)) return true;
+                    if (!is_allowed(near[i].rows, others) && meet(near[i], others)) return true;
             }
             if (near.size() <= alone) continue;
             std::atomic<bool> found = false;
             for_each_item(near.size() - alone, 0, "pair", [&](std::size_t i) {
                 const Near& pair = near[alone + i];
-                if (!found && !is_allowed(pair, others) && meet(pair, others)) found = true;
+                if (!found && !is_allowed(pair.rows, others) && meet(pair, others)) found = true;
             });
             if (found) return true;
         }
@@ -90,7 +91,7 @@ public:
             {
                 const WithoutGil without_gil;
                 at = find_near(others, axis, at, 0, near, without_gil.flag());
-                std::erase_if(near, [&](const Near& pair) { return is_allowed(pair, others); });
+                std::erase_if(near, [&](const Near& pair) { return is_allowed(pair.rows, others); });
             }
             std::vector<char> hit(near.size());
             for_each_item(near.size(), 0, "pair", [&](std::size_t i) { hit[i] = meet(near[i], others); });
@@ -105,20 +106,24 @@ public:
         }
         return {array_of(std::move(one), {met.size()}), array_of(std::move(other), {met.size()})};
     }
-    /// The least distance of any two, or of any of these and any of the others but one, with their rows; infinite, and
+    /// The least distance of any two, or of any of these and any of the others but some, with their rows; infinite, and
     /// rows without meaning, where there is no pair.
-    std::tuple<double, std::int64_t, std::int64_t> nearest(PlacedList* others, std::int64_t but) {
+    std::tuple<double, std::int64_t, std::int64_t> nearest(PlacedList* others, std::vector<std::uint32_t> but) {
+        std::ranges::sort(but);
+        const auto counts = [&](const Rows& rows) {
+            return others == nullptr ? !is_allowed(rows, others) : !std::ranges::binary_search(but, rows.second);
+        };
         const std::size_t axis = sort(others);
         asked_ = 0;
         Near best{infinite, {}};
-        double reach = upper_bound_of(others, axis, but);
+        double reach = upper_bound_of(others, axis, counts);
         std::vector<Near> near;
         for (std::size_t at = 0; at < places(others) && best.distance > 0;) {
             {
                 const WithoutGil without_gil;
                 at = find_near(others, axis, at, reach, near, without_gil.flag());
-                std::erase_if(near, [&](const Near& pair) { return others != nullptr && pair.rows.second == but; });
-                std::ranges::sort(near);
+                std::erase_if(near, [&](const Near& pair) { return !counts(pair.rows); });
+                std::sort(near.begin(), near.end());
             }
             look(others, near, reach, best);
         }
@@ -150,7 +155,9 @@ private:
     struct Near {
         double distance;
         Rows rows;
-        auto operator<=>(const Near&) const = default;
+        bool operator<(const Near& other) const {
+            return std::tie(distance, rows) < std::tie(other.distance, other.rows);
+        }
     };
     static constexpr std::size_t none = 3;
 
@@ -176,8 +183,8 @@ private:
     }
 
     const PlacedList& or_own(const PlacedList* others) const { return others != nullptr ? *others : *this; }
-    bool is_allowed(const Near& pair, const PlacedList* others) const {
-        return others == nullptr && !allowed_.empty() && std::ranges::binary_search(allowed_, pair.rows);
+    bool is_allowed(const Rows& rows, const PlacedList* others) const {
+        return others == nullptr && !allowed_.empty() && std::ranges::binary_search(allowed_, rows);
     }
     bool meet(const Near& pair, const PlacedList* others) const {
         const auto& [i, k] = pair.rows;
@@ -199,18 +206,19 @@ private:
         return static_cast<std::size_t>(std::ranges::max_element(spread) - spread.begin());
     }
     double low_of(std::uint32_t row, std::size_t axis) const { return boxes_[row].low[axis]; }
+    // What was sorted stays until somebody moves: others may look at it without the GIL.
     void sort_along(std::size_t axis) {
-        if (sorted_along_ == axis) return;
-        order_.resize(boxes_.size());
-        std::iota(order_.begin(), order_.end(), 0u);
-        std::ranges::sort(order_, {}, [&](std::uint32_t i) { return std::pair(low_of(i, axis), i); });
-        sorted_along_ = axis;
+        std::vector<std::uint32_t>& order = orders_[axis];
+        if (!order.empty()) return;
+        order.resize(boxes_.size());
+        std::iota(order.begin(), order.end(), 0u);
+        std::ranges::sort(order, {}, [&](std::uint32_t i) { return std::pair(low_of(i, axis), i); });
     }
     /// Both lists along the axis that it returns: that of the longer one, which moves less.
     std::size_t sort(PlacedList* others) {
         PlacedList& longer = others != nullptr && others->boxes_.size() > boxes_.size() ? *others : *this;
-        if (longer.sorted_along_ == none) longer.sort_along(longer.widest_axis());
-        const std::size_t axis = longer.sorted_along_;
+        if (longer.widest_ == none) longer.widest_ = longer.widest_axis();
+        const std::size_t axis = longer.widest_;
         sort_along(axis);
         if (others != nullptr) others->sort_along(axis);
         return axis;
@@ -233,15 +241,15 @@ private:
             const bool from_own = at < count;
             const PlacedList& here = from_own ? *this : *others;
             const PlacedList& there = others != nullptr && !from_own ? *this : or_own(others);
-            const std::uint32_t row = here.order_[from_own ? at : at - count];
+            const std::vector<std::uint32_t>& order = there.orders_[axis];
+            const std::uint32_t row = here.orders_[axis][from_own ? at : at - count];
             const Box& box = here.boxes_[row];
             const auto begin_of = [&](std::uint32_t i) { return there.low_of(i, axis); };
-            auto next = there.order_.begin() + static_cast<std::ptrdiff_t>(at + 1);
-            if (others != nullptr) { // what begins where this one does comes up once
-                next = from_own ? std::ranges::lower_bound(there.order_, box.low[axis], {}, begin_of)
-                                : std::ranges::upper_bound(there.order_, box.low[axis], {}, begin_of);
-            }
-            for (; next != there.order_.end() && begin_of(*next) <= box.high[axis] + reach; ++next) {
+            // What begins where this one does comes up once.
+            auto next = others == nullptr ? order.begin() + static_cast<std::ptrdiff_t>(at + 1)
+                        : from_own        ? std::ranges::lower_bound(order, box.low[axis], {}, begin_of)
+                                          : std::ranges::upper_bound(order, box.low[axis], {}, begin_of);
+            for (; next != order.end() && begin_of(*next) <= box.high[axis] + reach; ++next) {
                 const double apart = box.apart(there.boxes_[*next]);
                 if (!(apart <= reach)) continue;
                 const Rows rows = others == nullptr ? Rows(std::minmax(row, *next))
@@ -252,18 +260,20 @@ private:
         }
         return at;
     }
-    /// Of the least distance, by boxes that are next to each other.
-    double upper_bound_of(const PlacedList* others, std::size_t axis, std::int64_t but) const {
+    /// Of the least distance, by boxes that are next to each other. counts(rows): whether a pair is asked.
+    template <class Counts>
+    double upper_bound_of(const PlacedList* others, std::size_t axis, Counts&& counts) const {
         double least = infinite;
         const PlacedList& there = or_own(others);
-        for (std::size_t at = 0; at < order_.size(); ++at) {
-            const std::uint32_t row = order_[at];
+        const std::vector<std::uint32_t>&own = orders_[axis], &order = there.orders_[axis];
+        for (std::size_t at = 0; at < own.size(); ++at) {
+            const std::uint32_t row = own[at];
             const auto begin_of = [&](std::uint32_t i) { return there.low_of(i, axis); };
-            auto next = order_.begin() + static_cast<std::ptrdiff_t>(at + 1);
-            if (others != nullptr) next = std::ranges::lower_bound(there.order_, low_of(row, axis), {}, begin_of);
-            for (int tries = 0; tries < 2 && next != there.order_.begin() && others != nullptr; ++tries) --next;
-            for (int tries = 0; tries < 4 && next != there.order_.end(); ++tries, ++next)
-                if (others == nullptr || *next != but)
+            auto next = others == nullptr ? order.begin() + static_cast<std::ptrdiff_t>(at + 1)
+                                          : std::ranges::lower_bound(order, low_of(row, axis), {}, begin_of);
+            for (int tries = 0; tries < 2 && next != order.begin() && others != nullptr; ++tries) --next;
+            for (int tries = 0; tries < 4 && next != order.end(); ++tries, ++next)
+                if (counts(others != nullptr ? Rows(row, *next) : Rows(std::minmax(row, *next))))
                     least = std::min(least, boxes_[row].farthest(there.boxes_[*next]));
         }
         return least;
@@ -301,8 +311,8 @@ private:
     std::vector<Pose> poses_;
     std::vector<Box> boxes_;
     std::vector<Rows> allowed_;
-    std::vector<std::uint32_t> order_; ///< rows by where their boxes begin
-    std::size_t sorted_along_ = none, asked_ = 0;
+    std::array<std::vector<std::uint32_t>, 3> orders_; ///< rows by where their boxes begin, along each axis
+    std::size_t widest_ = none, asked_ = 0;
 };
 
 } // namespace
@@ -316,7 +326,7 @@ void bind_placed(nb::module_& m) {
         .def("set_allowed", &PlacedList::set_allowed, "pairs"_a)
         .def("any", &PlacedList::any, nb::arg("others").none())
         .def("all", &PlacedList::all, nb::arg("others").none())
-        .def("nearest", &PlacedList::nearest, nb::arg("others").none(), "but"_a = -1);
+        .def("nearest", &PlacedList::nearest, nb::arg("others").none(), "but"_a);
 }
 
 } // namespace raycontact::python

@@ -257,6 +257,7 @@ std::size_t write_contacts(GuardedScene& guarded, const std::vector<Column>& col
     const auto scene = guarded.enter();
     const WithoutGil without_gil;
     std::vector<ContactOutput> outputs;
+    outputs.reserve(columns.size());
     for (const auto& [name, is_cuda, address, bytes, stream, single] : columns)
         outputs.push_back({contact_column_from(name), memory_at(is_cuda, address, bytes, stream),
                            single ? NumberType::float32 : NumberType::float64});
