@@ -50,11 +50,11 @@ def test_sdf_geoms_have_as_many_contacts_as_their_slots():
     assert 4 <= data.ncon <= 6
 
 
-# A fifth contact of two meshes would be written beyond what MuJoCo has room for.
 @pytest.mark.parametrize("step", [0.001, 0.002])
-@pytest.mark.parametrize("friction", [0.5, 0.02])
+@pytest.mark.parametrize("friction", [0.5, 0.01])
 def test_a_nut_holds_by_friction_and_turns_down_without(friction, step):
-    """A thread of 1.5 mm a turn, steep by 1 in 28, and some hundredths of a millimetre of play."""
+    """A thread of 1.5 mm a turn, steep by 1 in 28, and some hundredths of a millimetre of play. With 0.02 it
+    hardly slides: pyramids of friction are coarse."""
     samples = rc.samples()
     nut_and_bolt = "".join(asset(name, (samples[name].vertices, samples[name].triangles)) for name in ("bolt", "nut"))
     like = f'type="sdf" friction="{friction}"'
@@ -80,6 +80,7 @@ def test_a_nut_holds_by_friction_and_turns_down_without(friction, step):
         assert heights[late][-1] - heights[late][0] == pytest.approx(0.0015 * turned / (2 * np.pi), abs=3e-5)
 
 
+# A fifth contact of two meshes would be written beyond what MuJoCo has room for.
 def test_no_more_contacts_than_slots():
     fine = torus(around=64, across=32)
     made = model(

@@ -516,8 +516,7 @@ class Scene:
         links = 1
         if is_list and not each:
             lead, links = lead[:-1], lead[-1]
-            count = len(shapes)
-            if links != count:
+            if links != (count := len(cores)):
                 raise InputError(f"poses: for {links} shapes, and {count} are given; give poses (..., {count}, 4, 4)")
         if links == 0:
             return np.zeros(lead, np.bool_) if lead else False
