@@ -110,11 +110,11 @@ bool is_whole(const PairMeshes& pair, const View& view, const Column& column) {
     return true;
 }
 
-/// Calls visit(face of a, face of b, polygon, column) for what lies over each other of a face of one side and the inner
-/// faces of the other. view.up: from a to b.
+/// Calls visit(face of a, face of b, column) for what lies over each other of a face of one side and the inner faces of
+/// the other; of one part of these, if that is not NONE. view.up: from a to b.
 template <class Visit>
 void each_over(const PairMeshes& pair, const InnerSurfaces& surfaces, const View& view, std::size_t side,
-               const InnerFace& own, Visit&& visit) {
+               const InnerFace& own, std::uint32_t other_part, Visit&& visit) {
     const double looks = side == 0 ? 1 : -1; // a's faces look along the normal, b's against it
     if (!(looks * dot(own.normal, view.up) > upright)) return;
     const ShadowFace shadow = seen(pair, view, side, own.face);
@@ -146,7 +146,8 @@ void each_over(const PairMeshes& pair, const InnerSurfaces& surfaces, const View
         for (const std::uint32_t t : block.triangle) {
             if (t == NONE) continue;
             const InnerFace* const across = surfaces.at(other, t);
-            if (across == nullptr || !(looks * dot(across->normal, view.up) < -upright)) continue;
+            if (across == nullptr || (other_part != NONE && across->part != other_part)) continue;
+            if (!(looks * dot(across->normal, view.up) < -upright)) continue;
             const ShadowFace below = seen(pair, view, other, t);
             if (below.area == 0 || shadow.is_beside(below)) continue;
             const ShadowFace &of_a = side == 0 ? shadow : below, &of_b = side == 0 ? below : shadow;
@@ -258,7 +259,7 @@ void OverlapPatches::look_along(const PairMeshes& pair, std::size_t side, std::u
     const Vec3 way = unit(parts_[part].area);
     const View view(side == 0 ? way : -1.0 * way);
     for (const std::uint32_t i : faces_of(part))
-        each_over(pair, surfaces_, view, side, faces[i],
+        each_over(pair, surfaces_, view, side, faces[i], NONE,
                   [&](const InnerFace& of_a, const InnerFace& of_b, const Column& column) {
                       Covered& covered = covered_[{of_a.part, of_b.part}];
                       covered.region = of_a.region;
@@ -296,9 +297,8 @@ void OverlapPatches::list_overlaps(const PairMeshes& pair, const Parts& parts, c
     if (normal == Vec3{}) return;
     const View view(normal);
     for (const std::uint32_t i : faces_of(parts[side]))
-        each_over(pair, surfaces_, view, side, surfaces_.of(side)[i],
+        each_over(pair, surfaces_, view, side, surfaces_.of(side)[i], parts[other],
                   [&](const InnerFace& of_a, const InnerFace& of_b, const Column& column) {
-                      if ((other == 0 ? of_a : of_b).part != parts[other]) return;
                       overlaps_.push_back({{of_a.face, of_b.face},
                                            patch,
                                            column.area,

@@ -180,7 +180,7 @@ TEST(certified, bodies_that_stand_still) {
     const std::uint64_t scenes = decisions_wanted() < 4e7 ? 16 : 40; // a sanitizer takes 10 s a scene
     for (std::uint64_t i = 0; i < scenes; ++i) {
         Random random(first_seed() + 800000 + i);
-        Settings settings = some_settings(random);
+        Settings settings = soon_directed(some_settings(random));
         const bool large = i % 8 == 5; // many slices of pairs, and two threads
         if (large) settings.execution.threads = 2;
         Triplet triplet(settings, thresholds[random.below(std::size(thresholds))],

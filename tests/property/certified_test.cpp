@@ -221,7 +221,7 @@ TEST(certified, fine_meshes_that_creep) {
     Counts counts;
     for (std::uint64_t i = 0; static_cast<double>(counts.decisions) < wanted; ++i) {
         Random random(first_seed() + 400000 + i);
-        Triplet triplet(some_settings(random), thresholds[random.below(std::size(thresholds))],
+        Triplet triplet(soon_directed(some_settings(random)), thresholds[random.below(std::size(thresholds))],
                         "creeping " + std::to_string(i));
         std::vector<std::shared_ptr<const Shape>> shapes;
         for (std::uint32_t b = 0; b < 8; ++b)

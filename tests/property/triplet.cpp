@@ -54,6 +54,12 @@ Settings some_settings(Random& random) {
     return settings;
 }
 
+Settings soon_directed(Settings settings) {
+    if (settings.direction == Direction::refined || settings.direction == Direction::weighted)
+        settings.direction = Direction::reprojected;
+    return settings;
+}
+
 void report(const char* what, const Counts& c, double wanted) {
     const std::uint64_t wrong = c.missed + c.invented + c.other;
     std::printf("[ counts   ] %s: %llu decisions in %llu steps of %llu scenes, %llu contacts; certified cast %.2f %%, "

@@ -39,6 +39,10 @@ inline constexpr double thresholds[] = {0, 1e-6, 1e-4, 1e-2, 0.3, 100, 1e12};
 /// One thread; direction, features and whether rays are skipped by chance: edges now and then, since they take longer.
 Settings some_settings(Random& random);
 
+/// These, but `reprojected` for `refined` and `weighted`, which decide nothing more and take seconds a step where fine
+/// bodies lie deep in each other.
+Settings soon_directed(Settings settings);
+
 /// One scene by the standard method and two by the certified one, fed alike: one chooses what it keeps itself, the
 /// other is told.
 class Triplet {
