@@ -127,11 +127,15 @@ RAYCONTACT_API bool contains(const Shape& shape, const Pose& pose, const Vec3& p
 // Regions of one mesh, in the body frame, by Shape::vertices(). What was in `found` is replaced: by indices, ascending,
 // each once. What is not a number is nowhere.
 
-/// A box along the axes of the body.
+/// A box along the axes of a frame: the body's, or the one that is named.
 struct AxisBox {
     Vec3 low;  ///< its lowest corner, metres
     Vec3 high; ///< its highest corner, metres
 };
+
+/// About a shape that is placed, along the axes of the world; a little larger than it is, by what is rounded: shapes
+/// whose boxes do not touch share no point. Takes any pose; of one that is not rigid it means nothing.
+RAYCONTACT_API AxisBox placed_box(const Shape& shape, const Pose& pose);
 
 /// The triangles whose own boxes touch a box: indices of Shape::triangles().
 RAYCONTACT_API void triangles_in_box(const Shape& shape, const Vec3& low, const Vec3& high,

@@ -161,6 +161,8 @@ public:
     /// The bodies whose meshes intersect another one, placed here; by slot. Throws InputError as
     /// raycontact::intersects().
     std::vector<BodyId> overlaps(const Shape& shape, const Pose& pose, const Wanted& wanted = {}) const;
+    /// Whether overlaps() has any; ends at the first one found. Throws InputError as it does.
+    bool overlaps_any(const Shape& shape, const Pose& pose, const Wanted& wanted = {}) const;
     /// Of two bodies. Throws InputError as raycontact::distance().
     std::optional<Distance> distance(BodyId a, BodyId b, double max = any_distance) const;
 
@@ -170,6 +172,9 @@ private:
     RAYCONTACT_HIDDEN void visit_near(const std::function<double(const Vec3& low, const Vec3& high)>& away,
                                       const std::function<double()>& farthest,
                                       const std::function<void(BodyId)>& visit) const;
+
+    template <class Met>
+    RAYCONTACT_HIDDEN void visit_overlaps(const Shape& other, const Pose& place, const Wanted& wanted, Met&& met) const;
 
     struct RAYCONTACT_HIDDEN State;
     std::unique_ptr<State> state_;

@@ -120,22 +120,47 @@ std::optional<BodyClosestPoint> Scene::closest_point(const Vec3& point, double m
     return nearest.found();
 }
 
-std::vector<BodyId> Scene::overlaps(const Shape& other, const Pose& place, const Wanted& wanted) const {
+AxisBox placed_box(const Shape& shape, const Pose& pose) {
+    const Box box = box_around(shape, pose);
+    return {box.low, box.high};
+}
+
+// Calls met(body) for those that meet the shape, until it returns false.
+template <class Met>
+void Scene::visit_overlaps(const Shape& other, const Pose& place, const Wanted& wanted, Met&& met) const {
     const FloatEnvironment environment;
     check_placed(place, "pose of the mesh");
     const Box box = box_around(other, place);
-    std::vector<BodyId> found;
+    bool goes_on = true;
     visit_near(
         [&](const Vec3& low, const Vec3& high) {
             return box.touches({low, high}) ? 0 : infinite;
         },
-        [] { return 0.0; },
+        [&] { return goes_on ? 0 : -infinite; },
         [&](BodyId body) {
-            if ((wanted && !wanted(body)) || !box_around(shape(body), pose(body)).touches(box)) return;
-            if (intersects(shape(body), pose(body), other, place)) found.push_back(body);
+            if (!goes_on || (wanted && !wanted(body))) return;
+            if (!box_around(shape(body), pose(body)).touches(box)) return;
+            if (intersects(shape(body), pose(body), other, place)) goes_on = met(body);
         });
+}
+
+std::vector<BodyId> Scene::overlaps(const Shape& other, const Pose& place, const Wanted& wanted) const {
+    std::vector<BodyId> found;
+    visit_overlaps(other, place, wanted, [&](BodyId body) {
+        found.push_back(body);
+        return true;
+    });
     std::ranges::sort(found, {}, &BodyId::slot);
     return found;
+}
+
+bool Scene::overlaps_any(const Shape& other, const Pose& place, const Wanted& wanted) const {
+    bool any = false;
+    visit_overlaps(other, place, wanted, [&](BodyId) {
+        any = true;
+        return false;
+    });
+    return any;
 }
 
 } // namespace raycontact

@@ -65,11 +65,12 @@ void NearLists::find_some(const Update& update, std::span<const Search> due, Cer
         CertifiedPair& pair = table.state(due[k].pair);
         release(pair);
         KeptNear& kept = pair.*kept_;
-        constexpr std::size_t much = 256;
-        const bool in_vain = due[k].is_wide && found_.of(2 * k).size() + found_.of(2 * k + 1).size() > much;
-        kept.reach = in_vain ? due[k].reach / 16 : std::min(1.1f * due[k].reach, 1.0f);
         kept.counts = {static_cast<std::uint32_t>(found_.of(2 * k).size()),
                        static_cast<std::uint32_t>(found_.of(2 * k + 1).size())};
+        // Each source is asked in every step. Back to the whole reach it takes some thirty steps.
+        constexpr std::uint32_t much = 256;
+        const bool in_vain = due[k].is_wide && kept.count() > much;
+        kept.reach = in_vain ? due[k].reach / 16 : std::min(1.1f * due[k].reach, 1.0f);
         const RangePool::Range range = pool_.allocate(kept.count());
         kept.first = range.first;
         kept.capacity = range.capacity;

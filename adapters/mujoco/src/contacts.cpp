@@ -53,31 +53,15 @@ Point point_of(const ManifoldPoint& found) {
     return {-found.depth, triple(found.position), triple(found.normal)};
 }
 
-/// Whether the boxes of two shapes, along the world's axes, are farther apart than this. MuJoCo asks about geoms whose
-/// spheres meet, as things in a bin and its walls.
+/// Whether the boxes of two shapes are farther apart than this along an axis. MuJoCo asks about geoms whose spheres
+/// meet, as things in a bin and its walls.
 bool are_apart(const Shape& a, const Pose& at_a, const Shape& b, const Pose& at_b, double by) {
-    const auto box_of = [](const Shape& shape, const Pose& pose) {
-        const Vec3 low = shape.box_min(), high = shape.box_max();
-        const std::array middle{0.5 * (low.x + high.x), 0.5 * (low.y + high.y), 0.5 * (low.z + high.z)},
-            half{0.5 * (high.x - low.x), 0.5 * (high.y - low.y), 0.5 * (high.z - low.z)},
-            centre{pose.translation.x, pose.translation.y, pose.translation.z};
-        std::array<std::array<double, 2>, 3> box{}; // the middle, and how far it reaches
-        for (std::size_t i = 0; i < 3; ++i) {
-            box[i] = {centre[i], 0};
-            for (std::size_t k = 0; k < 3; ++k) {
-                box[i][0] += pose.rotation[3 * i + k] * middle[k];
-                box[i][1] += std::fabs(pose.rotation[3 * i + k]) * half[k];
-            }
-        }
-        return box;
+    const AxisBox one = placed_box(a, at_a), two = placed_box(b, at_b);
+    const auto apart = [by](double low, double high, double other_low, double other_high) {
+        return low > other_high + by || other_low > high + by;
     };
-    const auto one = box_of(a, at_a), two = box_of(b, at_b);
-    for (std::size_t i = 0; i < 3; ++i) {
-        constexpr double rounding = 1e-12;
-        const double reach = one[i][1] + two[i][1] + by, far = std::fabs(one[i][0]) + std::fabs(two[i][0]);
-        if (std::fabs(one[i][0] - two[i][0]) > reach + rounding * (reach + far)) return true;
-    }
-    return false;
+    return apart(one.low.x, one.high.x, two.low.x, two.high.x) || apart(one.low.y, one.high.y, two.low.y, two.high.y)
+           || apart(one.low.z, one.high.z, two.low.z, two.high.z);
 }
 
 /// Those that stand for all, in an order that puts the most important first.

@@ -18,7 +18,7 @@ def assembly() -> list[rc.AssemblyPart]:
     """A gearbox with three faults: gears too close, a thick shaft, a bracket that is 2 mm too deep in the plate."""
     bracket, gear = parts.bracket(thick=1 / 32), parts.gear()
     placed = {
-        "plate": (parts.box(0.5, 0.3, 1 / 64), (0.1, 0, -5 / 64)),
+        "plate": (rc.box((0.5, 0.3, 1 / 64)), (0.1, 0, -5 / 64)),
         "bracket 1": (bracket, (0.28, 0, -7 / 128 - 0.002)),
         "bracket 2": (bracket, (-0.08, 0, -7 / 128)),  # stands on the plate, to the last bit
         "gear 1": (gear, (0, 0, 0)),

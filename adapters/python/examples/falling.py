@@ -21,7 +21,7 @@ STEPS_A_PICTURE = 32
 def world(count: int) -> World:
     kinds = [rc.Shape(parts.gear()), rc.Shape(parts.knot(along=48, around=8)), rc.Shape(parts.bracket())]
     centred = [rc.Shape(rc.Mesh(s.vertices - s.mass.centre, s.triangles, name=s.name)) for s in kinds]
-    ground = rc.Shape(parts.box(2.4, 2.4, 0.2))
+    ground = rc.Shape(rc.box((2.4, 2.4, 0.2)))
     random = np.random.default_rng(3)
     i = np.arange(count)
     places = np.stack((0.16 * (i % 3 - 1), 0.16 * (i // 3 % 2) - 0.08, 0.1 + 0.14 * i), axis=-1)

@@ -61,12 +61,6 @@ def bracket(width: float = 0.12, height: float = 0.1, wall: float = 0.015, thick
     return sweep(rings, "bracket", closed=False)
 
 
-def box(x: float, y: float, z: float) -> rc.Mesh:
-    """Of these sizes about the origin; convex, for grounds and plates."""
-    square = np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)]) * (x / 2, y / 2)
-    return sweep(np.stack([np.c_[square, np.full(4, side * z / 2)] for side in (-1, 1)]), "box", closed=False)
-
-
 def pad(reach: float = 0.03, height: float = 0.12, thick: float = 0.06) -> rc.Mesh:
     """A finger's pad, a V: its two edges at x = 0 face +x, the notch between them is `reach` / 2 deep."""
     y = np.array([-height / 2, 0, height / 2])

@@ -168,7 +168,7 @@ class CollisionManager:
     (4, 4) matrix from the mesh's frame to the world, metres, the translation in the last column.
 
     Two objects collide where their surfaces share a point (touching counts), or where one lies inside the other and
-    that is closed and wound alike everywhere. This is exact, in double.
+    that has an inside. This is exact, in double.
 
     Raises InputError (a ValueError) for a name that is not in the manager, a transform of another shape or one that is
     not finite and rigid to 1e-4, and a mesh that no Shape can be made of.

@@ -269,8 +269,8 @@ def intersects(
     *,
     threads: int = 0,
 ) -> Union[bool, NDArray[np.bool_]]:
-    """Whether two meshes share a point: their surfaces meet (touching counts), or one lies inside the other, if that is
-    closed and wound alike everywhere. Exact.
+    """Whether two meshes share a point: their surfaces meet (touching counts), or one lies inside the other, if that
+    has an inside (`Shape.has_inside`). Exact.
 
     Arguments and errors are those of `collide`. Gives a bool, or (n,) bool for lists.
     """
@@ -646,8 +646,8 @@ def contains(
 def contains(
     shape: ShapeLike, points: ArrayLike, pose: Optional[PoseLike] = None, *, threads: int = 0
 ) -> Union[bool, NDArray[np.bool_]]:
-    """Whether each point lies in a mesh that is closed and wound alike everywhere, or on its surface; False for others,
-    of which it warns (SheetWarning).
+    """Whether each point lies in a mesh that has an inside, or on its surface; False for others, of which it warns
+    (SheetWarning).
 
     Exact. Arguments and errors are those of `closest_point`. Gives a bool, or (n,) bool for lists.
     """

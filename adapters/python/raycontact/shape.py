@@ -115,7 +115,7 @@ class Shape:
 
     @property
     def has_inside(self) -> bool:
-        """It is closed and wound alike everywhere, so that a point can be inside it."""
+        """A point can be inside it: it is closed, wound alike everywhere, and holds something."""
         return self._core.has_inside
 
     @property

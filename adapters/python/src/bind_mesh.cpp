@@ -22,9 +22,6 @@ namespace raycontact::python {
 
 namespace {
 
-using Coordinates = nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
-using Corners = nb::ndarray<const std::uint32_t, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
-
 MeshFormat format_from(std::string_view word) {
     using enum MeshFormat;
     for (const auto& [name, format] : {std::pair<std::string_view, MeshFormat>{"obj", obj},
@@ -141,7 +138,7 @@ void bind_mesh(nb::module_& m) {
         "data"_a, "format"_a, "name"_a);
     m.def(
         "make_mesh",
-        [](const Coordinates& vertices, const Corners& triangles, const std::string& name,
+        [](const Points& vertices, const Corners& triangles, const std::string& name,
            const std::vector<std::string>& repairs) {
             const WithoutGil without_gil;
             Mesh mesh = make_mesh(std::span(vertices.data(), vertices.size()),

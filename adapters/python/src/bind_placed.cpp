@@ -161,25 +161,9 @@ private:
     };
     static constexpr std::size_t none = 3;
 
-    /// Grown by what is rounded: whether bodies meet is decided exactly, by the last bit.
     static Box box_of(const Shape& shape, const Pose& pose) {
-        const Vec3 low = shape.box_min(), high = shape.box_max(), &t = pose.translation;
-        const std::array middle{(low.x + high.x) / 2, (low.y + high.y) / 2, (low.z + high.z) / 2},
-            half{(high.x - low.x) / 2, (high.y - low.y) / 2, (high.z - low.z) / 2}, move{t.x, t.y, t.z};
-        Box box{};
-        for (std::size_t i = 0; i < 3; ++i) {
-            double centre = move[i], size = 0, reach = std::fabs(move[i]);
-            for (std::size_t k = 0; k < 3; ++k) {
-                const double r = pose.rotation[3 * i + k];
-                centre += r * middle[k];
-                size += std::fabs(r) * half[k];
-                reach += std::fabs(r) * (std::fabs(middle[k]) + half[k]);
-            }
-            size += 16 * std::numeric_limits<double>::epsilon() * reach;
-            box.low[i] = centre - size;
-            box.high[i] = centre + size;
-        }
-        return box;
+        const auto [low, high] = placed_box(shape, pose);
+        return {{low.x, low.y, low.z}, {high.x, high.y, high.z}};
     }
 
     const PlacedList& or_own(const PlacedList* others) const { return others != nullptr ? *others : *this; }

@@ -56,20 +56,11 @@ Array common_points(const PlacedPairs& pairs) {
 }
 
 nb::tuple distances(const PlacedPairs& pairs, double max) {
-    const std::size_t n = pairs.count;
-    LengthColumn least(n);
-    VectorColumn point_a(n), point_b(n);
-    IndexColumn triangle_a(n), triangle_b(n);
+    DistanceColumns least(pairs.count);
     pairs.for_each([&](std::size_t i, const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) {
-        const auto found = distance(a, pose_a, b, pose_b, max);
-        if (!found) return;
-        least.set(i, found->distance);
-        point_a.set(i, found->point_a);
-        point_b.set(i, found->point_b);
-        triangle_a.set_triangle(i, found->triangle_a);
-        triangle_b.set_triangle(i, found->triangle_b);
+        if (const auto found = distance(a, pose_a, b, pose_b, max)) least.set(i, *found);
     });
-    return nb::make_tuple(least.take(), point_a.take(), point_b.take(), triangle_a.take(), triangle_b.take());
+    return least.take();
 }
 
 nb::tuple all_contact_patches(const PlacedPairs& pairs) {

@@ -133,16 +133,6 @@ private:
 
 using Shapes = std::vector<std::shared_ptr<Shape>>;
 
-/// Whether any body meets the shape; ends at the first that does.
-bool overlaps_any(const Scene& scene, const Shape& shape, const Pose& pose, const Chosen& chosen) {
-    bool any = false;
-    scene.overlaps(shape, pose, [&](BodyId id) {
-        if (!any && chosen.has(id)) any = intersects(scene.shape(id), scene.pose(id), shape, pose);
-        return false;
-    });
-    return any;
-}
-
 nb::tuple all_overlaps(GuardedScene& guarded, const Shapes& shapes, const Matrices& matrices,
                        const std::optional<Ids>& ids) {
     const auto scene = guarded.enter();
@@ -172,7 +162,7 @@ Array any_overlaps(GuardedScene& guarded, const Shapes& shapes, const Matrices& 
     for_each_item(poses.size() / links, scene->settings().execution.threads, "configuration", [&](std::size_t i) {
         bool any = false;
         for (std::size_t k = i * links; k < (i + 1) * links && !any; ++k)
-            any = overlaps_any(*scene, *shapes[k % shapes.size()], poses[k], chosen);
+            any = scene->overlaps_any(*shapes[k % shapes.size()], poses[k], chosen.wanted());
         found.set(i, any);
     });
     return found.take();
@@ -210,10 +200,9 @@ std::optional<bool> one_any_overlaps(GuardedScene& guarded, const std::vector<co
         poses.push_back(*pose);
     }
     const auto scene = guarded.enter();
-    const Chosen chosen(*scene, std::nullopt);
     const WithoutGil without_gil;
     for (std::size_t i = 0; i < shapes.size(); ++i)
-        if (overlaps_any(*scene, *shapes[i], poses[i], chosen)) return true;
+        if (scene->overlaps_any(*shapes[i], poses[i])) return true;
     return false;
 }
 
@@ -230,19 +219,48 @@ nb::tuple distances(GuardedScene& guarded, const Ids& given_a, const Ids& given_
     const auto scene = guarded.enter();
     const auto a = ids_of(given_a), b = ids_of(given_b);
     const std::size_t n = items_of({{"a", a.size()}, {"b", b.size()}});
-    LengthColumn least(n);
-    VectorColumn point_a(n), point_b(n);
-    IndexColumn triangle_a(n), triangle_b(n);
+    DistanceColumns least(n);
     for_each_item(n, scene->settings().execution.threads, "pair", [&](std::size_t i) {
-        const auto found = scene->distance(of_item(a, i), of_item(b, i), max);
-        if (!found) return;
-        least.set(i, found->distance);
-        point_a.set(i, found->point_a);
-        point_b.set(i, found->point_b);
-        triangle_a.set_triangle(i, found->triangle_a);
-        triangle_b.set_triangle(i, found->triangle_b);
+        if (const auto found = scene->distance(of_item(a, i), of_item(b, i), max)) least.set(i, *found);
     });
-    return nb::make_tuple(least.take(), point_a.take(), point_b.take(), triangle_a.take(), triangle_b.take());
+    return least.take();
+}
+
+/// Rays of a query; one of a thing counts for all.
+struct Rays {
+    std::vector<Vec3> from, along;
+    std::size_t count;
+    Rays(const Points& origins, const Points& directions)
+        : from(points_of(origins)), along(points_of(directions)),
+          count(items_of({{"origins", from.size()}, {"directions", along.size()}})) {}
+};
+
+nb::tuple raycast(GuardedScene& guarded, const Points& origins, const Points& directions, double max,
+                  const std::optional<Ids>& ids) {
+    const auto scene = guarded.enter();
+    const Chosen chosen(*scene, ids);
+    const Rays rays(origins, directions);
+    RayHitColumns hits(rays.count);
+    IndexColumn bodies(rays.count);
+    for_each_item(rays.count, scene->settings().execution.threads, "ray", [&](std::size_t i) {
+        const auto hit = scene->raycast(of_item(rays.from, i), of_item(rays.along, i), max, chosen.wanted());
+        if (!hit) return;
+        hits.set(i, *hit);
+        bodies.set(i, number_of(hit->body));
+    });
+    return nb::make_tuple(hits.take(), bodies.take());
+}
+
+Array raycast_any(GuardedScene& guarded, const Points& origins, const Points& directions, double max,
+                  const std::optional<Ids>& ids) {
+    const auto scene = guarded.enter();
+    const Chosen chosen(*scene, ids);
+    const Rays rays(origins, directions);
+    AnswerColumn found(rays.count);
+    for_each_item(rays.count, scene->settings().execution.threads, "ray", [&](std::size_t i) {
+        found.set(i, scene->raycast_any(of_item(rays.from, i), of_item(rays.along, i), max, chosen.wanted()));
+    });
+    return found.take();
 }
 
 UserMemory memory_at(bool is_cuda, std::uint64_t address, std::size_t bytes, std::uint64_t stream) {
@@ -369,40 +387,8 @@ void bind_scene(nb::module_& m) {
         .def_prop_ro(
             "pairs", [](GuardedScene& guarded) { return pairs_array(guarded.enter()->pairs()); },
             nb::rv_policy::automatic)
-        .def(
-            "raycast",
-            [](GuardedScene& guarded, const Points& origins, const Points& directions, double max,
-               const std::optional<Ids>& ids) {
-                const auto scene = guarded.enter();
-                const Chosen chosen(*scene, ids);
-                const auto from = points_of(origins), along = points_of(directions);
-                const std::size_t n = items_of({{"origins", from.size()}, {"directions", along.size()}});
-                RayHitColumns hits(n);
-                IndexColumn bodies(n);
-                for_each_item(n, scene->settings().execution.threads, "ray", [&](std::size_t i) {
-                    const auto hit = scene->raycast(of_item(from, i), of_item(along, i), max, chosen.wanted());
-                    if (!hit) return;
-                    hits.set(i, *hit);
-                    bodies.set(i, number_of(hit->body));
-                });
-                return nb::make_tuple(hits.take(), bodies.take());
-            },
-            "origins"_a, "directions"_a, "max"_a, "wanted"_a.none())
-        .def(
-            "raycast_any",
-            [](GuardedScene& guarded, const Points& origins, const Points& directions, double max,
-               const std::optional<Ids>& ids) {
-                const auto scene = guarded.enter();
-                const Chosen chosen(*scene, ids);
-                const auto from = points_of(origins), along = points_of(directions);
-                const std::size_t n = items_of({{"origins", from.size()}, {"directions", along.size()}});
-                AnswerColumn found(n);
-                for_each_item(n, scene->settings().execution.threads, "ray", [&](std::size_t i) {
-                    found.set(i, scene->raycast_any(of_item(from, i), of_item(along, i), max, chosen.wanted()));
-                });
-                return found.take();
-            },
-            "origins"_a, "directions"_a, "max"_a, "wanted"_a.none())
+        .def("raycast", &raycast, "origins"_a, "directions"_a, "max"_a, "wanted"_a.none())
+        .def("raycast_any", &raycast_any, "origins"_a, "directions"_a, "max"_a, "wanted"_a.none())
         .def(
             "closest_points",
             [](GuardedScene& guarded, const Points& given, double max, const std::optional<Ids>& ids) {

@@ -54,12 +54,10 @@ nb::tuple three(const Vec3& v) {
     return nb::make_tuple(v.x, v.y, v.z);
 }
 
-using Coordinates = nb::ndarray<const double, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
-using Corners = nb::ndarray<const std::uint32_t, nb::shape<-1, 3>, nb::c_contig, nb::device::cpu>;
 using Indices = nb::ndarray<const std::uint32_t, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
 
 /// The shape that had these, bit by bit: equal input makes equal shapes, and what prepare_mesh() found is given.
-std::shared_ptr<Shape> remake_shape(const std::string& name, const Coordinates& vertices, const Corners& triangles,
+std::shared_ptr<Shape> remake_shape(const std::string& name, const Points& vertices, const Corners& triangles,
                                     const Indices& vertex_index, const Indices& triangle_index,
                                     const MeshReport& report) {
     if (vertex_index.shape(0) != vertices.shape(0) || triangle_index.shape(0) != triangles.shape(0))

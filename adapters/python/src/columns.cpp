@@ -29,6 +29,18 @@ nb::tuple RayHitColumns::take() {
     return nb::make_tuple(distance.take(), point.take(), normal.take(), triangle.take());
 }
 
+void DistanceColumns::set(std::size_t i, const Distance& found) {
+    distance.set(i, found.distance);
+    point_a.set(i, found.point_a);
+    point_b.set(i, found.point_b);
+    triangle_a.set_triangle(i, found.triangle_a);
+    triangle_b.set_triangle(i, found.triangle_b);
+}
+
+nb::tuple DistanceColumns::take() {
+    return nb::make_tuple(distance.take(), point_a.take(), point_b.take(), triangle_a.take(), triangle_b.take());
+}
+
 void ClosestPointColumns::set(std::size_t i, const ClosestPoint& found) {
     distance.set(i, found.distance);
     point.set(i, found.point);

@@ -81,6 +81,17 @@ struct RayHitColumns {
     nb::tuple take();
 };
 
+/// What of two meshes is nearest: distance, both points, both triangles.
+struct DistanceColumns {
+    LengthColumn distance;
+    VectorColumn point_a, point_b;
+    IndexColumn triangle_a, triangle_b;
+    explicit DistanceColumns(std::size_t count)
+        : distance(count), point_a(count), point_b(count), triangle_a(count), triangle_b(count) {}
+    void set(std::size_t i, const Distance& found);
+    nb::tuple take();
+};
+
 /// What is nearest to points: distance, point, triangle.
 struct ClosestPointColumns {
     LengthColumn distance;

@@ -144,9 +144,17 @@ TEST_F(SceneQueries, OverlapsAreTheBodiesThatIntersect) {
         for (const Placed& p : placed_)
             if (intersects(*p.shape, p.pose, *probe, pose)) expected.push_back(p.body);
         EXPECT_TRUE(scene_.overlaps(*probe, pose) == expected) << i;
+        EXPECT_EQ(scene_.overlaps_any(*probe, pose), !expected.empty()) << i;
         overlapping += expected.size();
         const auto first = [&](BodyId body) { return !expected.empty() && body == expected[0]; };
         EXPECT_EQ(scene_.overlaps(*probe, pose, first).size(), expected.empty() ? 0u : 1u) << i;
+        EXPECT_EQ(scene_.overlaps_any(*probe, pose, first), !expected.empty()) << i;
+        const AxisBox box = placed_box(*probe, pose);
+        for (const Vec3& v : probe->file_vertices()) {
+            const Vec3 p = transform_point(pose, v);
+            EXPECT_TRUE(p.x > box.low.x && p.y > box.low.y && p.z > box.low.z) << i;
+            EXPECT_TRUE(p.x < box.high.x && p.y < box.high.y && p.z < box.high.z) << i;
+        }
     }
     EXPECT_GT(overlapping, 50u);
 }
