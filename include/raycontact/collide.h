@@ -23,9 +23,9 @@ struct CollideOptions {
 };
 
 /// The contacts of two meshes, once, without a scene: those that a Scene with the two bodies would find, sorted alike.
-/// `a` is body 0 and `b` body 1; normals point from a to b. It copies the arrays of both shapes: to ask about the same
-/// shapes in many poses, keep a Scene. Safe to call from several threads. Throws InputError for a pose that is not
-/// finite and rigid, and for options that make no sense.
+/// `a` is body 0 and `b` body 1; normals point from a to b. Whoever asks about the same shapes step by step keeps a
+/// Scene. A thread keeps the memory that a question took, of shapes with few triangles, but neither shape. Safe to call
+/// from several threads. Throws InputError for a pose that is not finite and rigid, and for options that make no sense.
 RAYCONTACT_API std::vector<Contact> collide(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
                                             const CollideOptions& options = {});
 

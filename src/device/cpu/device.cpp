@@ -176,11 +176,12 @@ void* address_of(const Argument& argument) {
 }
 
 DeviceInfo describe() {
+    static const std::string name = platform::processor_name(); // Linux writes a text of every core for each question
     DeviceInfo info;
     info.id = "cpu";
     info.kind = "cpu";
     info.type = "cpu";
-    info.name = platform::processor_name();
+    info.name = name;
     info.driver = "native, " + std::string(usable_tables().front()->instruction_set);
     info.cores = usable_cores();
     info.memory_bytes = platform::physical_memory();

@@ -43,6 +43,33 @@ TEST(Collide, FindsWhatASceneFinds) {
     EXPECT_GT(contacts, 500u);
 }
 
+// A thread asks in one scene again and again: nothing of a question is left for the next, and no shape is kept.
+TEST(Collide, KeepsNothingOfTheLastQuestion) {
+    Random random(4);
+    std::size_t contacts = 0;
+    for (int i = 0; i < 200; ++i) {
+        const Placement p = random_placement(pointers(closed_subjects()), random);
+        if (i % 8 == 7) { // another question in between, with options of its own
+            collide(*p.b->shape, p.pose_b, *p.a->shape, p.pose_a, {.features = Features::vertices, .threads = 2});
+            collide(*p.b->shape, p.pose_b, *p.a->shape, p.pose_a, {.direction = Direction::ray});
+        }
+        Scene scene;
+        const Pair pair{scene.add(p.a->shape, p.pose_a), scene.add(p.b->shape, p.pose_b)};
+        const auto expected = scene.find_contacts({&pair, 1});
+        const auto found = collide(*p.a->shape, p.pose_a, *p.b->shape, p.pose_b);
+        EXPECT_TRUE(same_bits(expected, found));
+        contacts += found.size();
+    }
+    EXPECT_GT(contacts, 100u);
+    std::weak_ptr<const Shape> gone;
+    {
+        const auto box = Shape::make(box_mesh({0.5, 0.5, 0.5}));
+        EXPECT_FALSE(collide(*box, {}, *box, at(0, 0, 0.9)).empty());
+        gone = box;
+    }
+    EXPECT_TRUE(gone.expired());
+}
+
 // A is above B and 0.1 m too low, so its point is below that of B.
 TEST(Collide, WitnessPointsAreADepthApart) {
     const auto box = Shape::make(box_mesh({0.5, 0.5, 0.5}));
