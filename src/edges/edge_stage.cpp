@@ -169,7 +169,7 @@ void EdgeStage::find(Workspace& work, Block& block, const Question& question, co
     std::ranges::copy_if(speculative, std::back_inserter(work.ahead), std::not_fn(is_inside));
     // Of two sheets vertices alone look ahead.
     if (settings.is_speculative() && asked.edges && (a.shape->has_inside() || b.shape->has_inside())) {
-        find_speculative_edges({a, b, speculative_margin(settings, a, b)}, near[0],
+        find_speculative_edges({a, b, speculative_margin(settings, a, b)}, near,
                                in_contact ? least_hidden * smaller_size(a, b) : -1, work.found);
     }
     work.found.insert(work.found.end(), work.ahead.begin(), work.ahead.end());

@@ -78,7 +78,7 @@ STRUCT(Search) {
     READS(ClusterBlock) clusters; // of the source
     READS(uint) balls;            // of the target
     float horizon;
-    float least;      // edges that hide less are left out
+    EdgeChoice choice;
     float reach;      // of the sources' rays, as safe_distance() takes it; not known of vertices
     float least_safe; // of the boxes left out
 };
@@ -104,8 +104,10 @@ DEVICE uint near_lanes(Search* search, READS(ClusterBlock) block) {
         const float y = ((r[3] * cx + r[4] * cy) + r[5] * cz) + t[1];
         const float z = ((r[6] * cx + r[7] * cy) + r[8] * cz) + t[2];
         const float free = safe_distance(grid, search->balls, x, y, z, search->reach), gap = bounds_gap(b, x, y, z);
-        const float safe = (free > gap ? free : gap) - 1.0005f * root_of((hx * hx + hy * hy) + hz * hz);
-        const uint counts = (uint)(block->hides[k] >= search->least);
+        const float away = (free > gap ? free : gap) - 1.0005f * root_of((hx * hx + hy * hy) + hz * hz);
+        const float hides = block->hides[k];
+        const float safe = away + (hides < search->choice.least_ahead ? search->choice.ahead : 0.0f);
+        const uint counts = (uint)(hides >= search->choice.least);
         const uint reached = counts & (uint)(safe <= search->horizon);
         within[k] = -(int)reached;
         const uint passed_over = counts & (uint)(safe > search->horizon); // false for NaN, in empty lanes
@@ -116,8 +118,15 @@ DEVICE uint near_lanes(Search* search, READS(ClusterBlock) block) {
     return pack_sixteen(within);
 }
 
-// Without horizons the horizon is negative. least: null for 0.
-DEVICE Search search_of(uint p, uint edges, READS(DirectedPair) pairs, READS(float) horizons, READS(float) least,
+// choices: by pair; null for all edges alike.
+DEVICE EdgeChoice choice_of(READS(EdgeChoice) choices, uint p) {
+    const EdgeChoice all = {0.0f, 0.0f, 0.0f};
+    if (!choices) return all;
+    return choices[p];
+}
+
+// Without horizons the horizon is negative.
+DEVICE Search search_of(uint p, uint edges, READS(DirectedPair) pairs, READS(float) horizons, READS(EdgeChoice) choices,
                         READS(ShapeHeader) shapes, READS(ulong) memory) {
     READS(DirectedPair) pair = pairs + p;
     READS(ShapeHeader) source = shapes + pair->source;
@@ -129,7 +138,7 @@ DEVICE Search search_of(uint p, uint edges, READS(DirectedPair) pairs, READS(flo
                            AT(memory, ClusterBlock, source->clusters),
                            AT(memory, uint, target->clearances),
                            horizons ? horizons[p] : -1.0f,
-                           least ? least[p] : 0.0f,
+                           choice_of(choices, p),
                            edges != 0u ? 0.0f : UNBOUNDED,
                            UNBOUNDED};
     return search;
@@ -234,18 +243,18 @@ DEVICE void write_reached(Search* search, READS(ulong) mask, const FoundBlocks* 
 
 // Counts the vertex blocks of each pair that may reach into the bounds. With horizons (metres, by pair) it leaves out
 // blocks that cannot be in contact before they have moved that far. safe_distances, with horizons: for a pair without
-// blocks, a lower bound of how far its vertices can move before one could be in contact; may be negative. least,
-// with horizons: of edges those that hide less are left out. edges: what is searched, as BlockSearch::Sources: 0
-// vertices that cast, 1 edges, 2 vertices as points; edges and points are in contact where they meet the surface.
+// blocks, a lower bound of how far its vertices can move before one could be in contact; may be negative. choices: of
+// edges, with horizons; null for all. edges: what is searched, as BlockSearch::Sources: 0 vertices that cast, 1 edges,
+// 2 vertices as points; edges and points are in contact where they meet the surface.
 KERNEL void count_clusters(COUNT(count), uint edges, READS(DirectedPair) pairs, READS(float) horizons,
-                           READS(float) least, READS(ShapeHeader) shapes, READS(ulong) memory, WRITES(uint) counts,
-                           WRITES(float) safe_distances, WRITES(ulong) block_masks) {
+                           READS(EdgeChoice) choices, READS(ShapeHeader) shapes, READS(ulong) memory,
+                           WRITES(uint) counts, WRITES(float) safe_distances, WRITES(ulong) block_masks) {
     FOR_EACH(p, count) {
         if (pairs[p].source == NONE) {
             counts[p] = 0u;
             continue;
         }
-        Search search = search_of(p, edges, pairs, horizons, least, shapes, memory);
+        Search search = search_of(p, edges, pairs, horizons, choices, shapes, memory);
         counts[p] = search.horizon < 0.0f ? count_reached(&search, false, block_masks + MASK_WORDS * p)
                                           : count_reached(&search, true, block_masks + MASK_WORDS * p);
         if (horizons) safe_distances[p] = search.least_safe;
@@ -253,11 +262,12 @@ KERNEL void count_clusters(COUNT(count), uint edges, READS(DirectedPair) pairs, 
 }
 
 KERNEL void write_clusters(COUNT(count), uint edges, READS(DirectedPair) pairs, READS(float) horizons,
-                           READS(float) least, READS(ShapeHeader) shapes, READS(ulong) memory, READS(ulong) block_masks,
-                           READS(uint) firsts, WRITES(PairBlock) blocks, uint stride, WRITES(uint) ray_counts) {
+                           READS(EdgeChoice) choices, READS(ShapeHeader) shapes, READS(ulong) memory,
+                           READS(ulong) block_masks, READS(uint) firsts, WRITES(PairBlock) blocks, uint stride,
+                           WRITES(uint) ray_counts) {
     FOR_EACH(p, count) {
         if (pairs[p].source == NONE) continue;
-        Search search = search_of(p, edges, pairs, horizons, least, shapes, memory);
+        Search search = search_of(p, edges, pairs, horizons, choices, shapes, memory);
         // NOLINTNEXTLINE(modernize-use-nullptr): this text is C as well
         const FoundBlocks found = {blocks + firsts[p], ray_counts + firsts[p], stride, (GLOBAL ulong*)0};
         write_reached(&search, block_masks + MASK_WORDS * p, &found);

@@ -116,7 +116,9 @@ DEVICE void place_sources(MovingLanes* lanes, uint vertices, READS(DirectedPair)
         }
     }
     FOR_LANES(k, VERTICES_AT_ONCE) {
-        lanes->length[k] = arm * block->exit[first + k];
+        const float hx = block->direction[0][first + k], hy = block->direction[1][first + k];
+        const float hz = block->direction[2][first + k];
+        lanes->length[k] = arm * root_of((hx * hx + hy * hy) + hz * hz);
         lanes->away[k] = 0.0f;
     }
 }
@@ -154,12 +156,14 @@ DEVICE void move_sources(MovingLanes* lanes, uint vertices, READS(DirectedPair) 
 // will be; null: they stay. Of pairs with `ahead` (null: none) it tells, too, how far the others stay away, but of
 // nothing that is farther than that.
 KERNEL void count_edges(COUNT(count), uint vertices, READS(DirectedPair) pairs, READS(DirectedPair) next,
-                        READS(float) thrown, READS(float) margins, READS(float) ahead, READS(ShapeHeader) shapes,
-                        READS(ulong) memory, WRITES(PairBlock) found_blocks, WRITES(uint) counts) {
+                        READS(float) thrown, READS(float) margins, READS(EdgeChoice) choices, READS(float) ahead,
+                        READS(ShapeHeader) shapes, READS(ulong) memory, WRITES(PairBlock) found_blocks,
+                        WRITES(uint) counts) {
     FOR_EACH_VERTICES(i, first, count) {
         READS(DirectedPair) pair = pairs + found_blocks[i].pair;
         READS(VertexBlock) block = source_block(pair, shapes, memory, found_blocks[i].vertex_block);
         const float margin = margins[found_blocks[i].pair];
+        const EdgeChoice choice = choice_of(choices, found_blocks[i].pair);
         float b[6];
         for (int k = 0; k < 3; ++k) {
             b[k] = pair->bounds[k] - margin;
@@ -173,7 +177,10 @@ KERNEL void count_edges(COUNT(count), uint vertices, READS(DirectedPair) pairs, 
         }
         const float far = ahead ? ahead[found_blocks[i].pair] : 0.0f;
         int found[VERTICES_AT_ONCE], asked[VERTICES_AT_ONCE];
-        float gap[VERTICES_AT_ONCE];
+        float gap[VERTICES_AT_ONCE], own[VERTICES_AT_ONCE];
+        FOR_LANES(k, VERTICES_AT_ONCE) {
+            own[k] = block->exit[first + k] < choice.least_ahead ? margin - choice.ahead : margin;
+        }
         FOR_LANES(k, VERTICES_AT_ONCE) {
             const float x = edges.middle[0][k], y = edges.middle[1][k], z = edges.middle[2][k];
             const float ex = edges.reach[0][k], ey = edges.reach[1][k], ez = edges.reach[2][k];
@@ -196,7 +203,7 @@ KERNEL void count_edges(COUNT(count), uint vertices, READS(DirectedPair) pairs, 
             const float qz = 0.5f * edges.half_edge[2][k];
             const float one = safe_distance(grid, balls, x - qx, y - qy, z - qz, 0.0f);
             const float two = safe_distance(grid, balls, x + qx, y + qy, z + qz, 0.0f);
-            beyond[k] = (one < two ? one : two) - ((0.50025f * edges.length[k] + margin) + edges.away[k]);
+            beyond[k] = (one < two ? one : two) - ((0.50025f * edges.length[k] + own[k]) + edges.away[k]);
             found[k] &= -(int)(beyond[k] <= 0.0f);
         }
         if (asks_far != 0u) {
@@ -227,9 +234,10 @@ STRUCT(EdgeGroup) {
 STRUCT(EdgeArrays) {
     uint vertices; // 1: the sources are points
     READS(DirectedPair) pairs;
-    READS(DirectedPair) next; // null: the pairs stay; else they are half-way there
-    READS(float) thrown;      // by pair, as of find_margins
-    READS(float) margins;     // by pair
+    READS(DirectedPair) next;  // null: the pairs stay; else they are half-way there
+    READS(float) thrown;       // by pair, as of find_margins
+    READS(float) margins;      // by pair
+    READS(EdgeChoice) choices; // by pair; null: all edges alike
     READS(ShapeHeader) shapes;
     READS(ulong) memory;
     READS(Ray) rays;
@@ -321,6 +329,7 @@ DEVICE uint edges_in_lane(const EdgeGroup* group, READS(Node) node, uint lane) {
 
 DEVICE void add_edge(EdgeGroup* group, uint r, const EdgeArrays* arrays, const Ray ray) {
     SourceRay edge = source_ray(arrays->pairs + ray.pair, arrays->shapes, arrays->memory, ray.vertex_lane);
+    const float hides = edge.reach; // of vertices how far they go until they leave their body
     float farther = 0.0f;
     if (arrays->thrown && edge.reach < arrays->thrown[ray.pair]) farther = arrays->thrown[ray.pair];
     float way2 = 0.0f, turn2 = 0.0f, passed[3] = {0.0f, 0.0f, 0.0f};
@@ -328,7 +337,8 @@ DEVICE void add_edge(EdgeGroup* group, uint r, const EdgeArrays* arrays, const R
         group->way[i][r] = 0.0f;
         if (arrays->vertices != 0u) edge.direction[i] = 0.0f;
     }
-    if (arrays->vertices != 0u) edge.reach = 0.0f;
+    float length2 = 0.0f;
+    for (int i = 0; i < 3; ++i) length2 += edge.direction[i] * edge.direction[i];
     if (arrays->next) {
         const SourceRay then = source_ray(arrays->next + ray.pair, arrays->shapes, arrays->memory, ray.vertex_lane);
         for (int i = 0; i < 3; ++i) {
@@ -343,7 +353,9 @@ DEVICE void add_edge(EdgeGroup* group, uint r, const EdgeArrays* arrays, const R
             turn2 += turn * turn;
         }
     }
-    const float margin = arrays->margins[ray.pair] + farther, way = 1.0001f * root_of(way2);
+    const EdgeChoice choice = choice_of(arrays->choices, ray.pair);
+    const float margin = (arrays->margins[ray.pair] - (hides < choice.least_ahead ? choice.ahead : 0.0f)) + farther;
+    const float way = 1.0001f * root_of(way2);
     for (int i = 0; i < 3; ++i) {
         const float reach = (magnitude_of(edge.direction[i]) + passed[i]) + margin;
         group->middle[i][r] = edge.position[i];
@@ -351,7 +363,7 @@ DEVICE void add_edge(EdgeGroup* group, uint r, const EdgeArrays* arrays, const R
         group->low[i][r] = edge.position[i] - reach;
         group->high[i][r] = edge.position[i] + reach;
     }
-    group->length[r] = arrays->vertices != 0u ? way : 1.0005f * edge.reach;
+    group->length[r] = arrays->vertices != 0u ? way : 1.0005f * root_of(length2);
     group->margin[r] = margin + 1.0001f * root_of(turn2);
     group->way_length[r] = arrays->vertices != 0u ? 0.0f : way;
     group->pair[r] = ray.pair;
@@ -412,10 +424,11 @@ DEVICE void cast_together(const EdgeArrays* arrays, const EdgeGroup* group, uint
 }
 
 KERNEL void cast_edges(COUNT(count), uint vertices, READS(DirectedPair) pairs, READS(DirectedPair) next,
-                       READS(float) thrown, READS(float) margins, READS(ShapeHeader) shapes, READS(ulong) memory,
-                       READS(Ray) rays, WRITES(EdgeHits) hits, WRITES(uint) counts) {
+                       READS(float) thrown, READS(float) margins, READS(EdgeChoice) choices, READS(ShapeHeader) shapes,
+                       READS(ulong) memory, READS(Ray) rays, WRITES(EdgeHits) hits, WRITES(uint) counts) {
     // NOLINTNEXTLINE(modernize-use-nullptr): this text is C as well
-    const EdgeArrays arrays = {vertices, pairs, next, thrown, margins, shapes, memory, rays, hits, (GLOBAL NearEdge*)0};
+    const EdgeArrays arrays = {vertices,           pairs, next, thrown, margins, choices, shapes, memory, rays, hits,
+                               (GLOBAL NearEdge*)0};
     FOR_EACH_FEW(i, few, RAYS_IN_GROUP, count) {
         EdgeGroup group;
         for (uint r = 0u; r < RAYS_IN_GROUP; ++r) add_edge(&group, r, &arrays, rays[r < few ? i + r : i]);
@@ -434,8 +447,9 @@ KERNEL void cast_edges(COUNT(count), uint vertices, READS(DirectedPair) pairs, R
 
 // Edges with more faces than EdgeHits holds are cast again.
 KERNEL void write_edges(COUNT(count), uint vertices, READS(DirectedPair) pairs, READS(DirectedPair) next,
-                        READS(float) thrown, READS(float) margins, READS(ShapeHeader) shapes, READS(ulong) memory,
-                        READS(Ray) rays, READS(EdgeHits) hits, READS(uint) firsts, WRITES(NearEdge) near) {
+                        READS(float) thrown, READS(float) margins, READS(EdgeChoice) choices, READS(ShapeHeader) shapes,
+                        READS(ulong) memory, READS(Ray) rays, READS(EdgeHits) hits, READS(uint) firsts,
+                        WRITES(NearEdge) near) {
     FOR_EACH(i, count) {
         const uint found = hits[i].count;
         if (found == 0u) continue;
@@ -445,7 +459,7 @@ KERNEL void write_edges(COUNT(count), uint vertices, READS(DirectedPair) pairs, 
         if (found > EDGE_FACES) {
             // NOLINTNEXTLINE(modernize-use-nullptr): this text is C as well
             GLOBAL EdgeHits* none = (GLOBAL EdgeHits*)0;
-            const EdgeArrays arrays = {vertices, pairs,  next, thrown, margins,
+            const EdgeArrays arrays = {vertices, pairs,  next, thrown, margins,         choices,
                                        shapes,   memory, rays, none,   near + firsts[i]};
             EdgeGroup group;
             for (uint r = 0u; r < RAYS_IN_GROUP; ++r) add_edge(&group, r, &arrays, ray);

@@ -59,8 +59,8 @@ STRUCT_OF_ROWS(Node) {
 WIRE_SIZE(Node, 512);
 
 // Sixteen vertices that cast rays. direction: the inward normal. exit: distance at which the ray leaves its own mesh.
-// Or sixteen edges. position: the middle. direction: from there to the end. exit: its length. vertex: 3 x the edge's
-// lowest triangle + its first corner.
+// Or sixteen edges. position: the middle. direction: from there to the end. exit: what it hides, metres
+// (docs/internals/edges.md). vertex: 3 x the edge's lowest triangle + its first corner.
 STRUCT_OF_ROWS(VertexBlock) {
     float position[3][VERTEX_LANES];
     float direction[3][VERTEX_LANES];
@@ -77,6 +77,13 @@ STRUCT_OF_ROWS(ClusterBlock) {
                                // UNBOUNDED
 };
 WIRE_SIZE(ClusterBlock, 448);
+
+// Which edges of a directed pair are sought, by what they hide, metres. One that hides less than `least` may be left
+// out, one that hides less than least_ahead is sought by `ahead` less far.
+STRUCT(EdgeChoice) {
+    float least, least_ahead, ahead;
+};
+WIRE_SIZE(EdgeChoice, 12);
 
 // Where a triangle lies among the blocks (TRIANGLE_LANES * block + lane, NONE without area), and the triangles across
 // its edges 0-1, 1-2, 2-0 (NONE at a border).

@@ -98,6 +98,16 @@ Motion::Bound Motion::bound(std::span<const Body> bodies, const SlotPair& pair) 
             1.001 * double(still + (((a.turn + a.warp) * a.reach + (b.turn + b.warp) * b.reach) + arc))};
 }
 
+double Motion::pair_way(const SlotPair& pair, double margin) const {
+    if (next_.empty()) return 0;
+    const Body &a = next_[pair.first], &b = next_[pair.second];
+    const float still = distance(a.shift, b.shift) + (a.shift_lost + b.shift_lost);
+    const float apart = distance(a.centre, b.centre) + (a.centre_lost + b.centre_lost);
+    const float turned =
+        std::min(a.turn * a.reach + b.turn * (apart + a.reach), b.turn * b.reach + a.turn * (apart + b.reach));
+    return 1.001 * double(still + turned) > margin ? bound(next_, pair).nearer : 0;
+}
+
 double Motion::pair_speed(const SlotPair& pair) const {
     const Body &a = bodies_[pair.first], &b = bodies_[pair.second];
     return double(distance(a.shift, b.shift)) + double(std::max(a.turn * a.reach, b.turn * b.reach));

@@ -29,8 +29,9 @@ public:
             nearer; ///< by how much any point of the one came nearer to the other, on a straight way in its frame, too
     };
     Bound pair_bound(const SlotPair& pair) const { return bound(bodies_, pair); }
-    /// Bound::nearer of the way that is before the bodies (PlacedBody::next); 0 until expect().
-    double pair_way(const SlotPair& pair) const { return next_.empty() ? 0 : bound(next_, pair).nearer; }
+    /// Bound::nearer of the way that is before the bodies (PlacedBody::next), if points of either body may go farther
+    /// than `margin` as seen from the other; else 0, as until expect().
+    double pair_way(const SlotPair& pair, double margin) const;
     /// About how fast the two bodies' surfaces move past each other, metres a step.
     double pair_speed(const SlotPair& pair) const;
     /// How far the pair's relative rotation may be from an orthonormal matrix.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <raycontact/settings.h>
+
 #include "device/host_kernels.h"
 #include "pairs/directed_pairs.h"
 #include "shape/shape_data.h"
@@ -25,6 +27,16 @@ inline double hidden_length(const PlacedBody& a, const PlacedBody& b) {
 /// Whether an edge of either body hides more than a part of the smaller one.
 inline bool hides_more(const PlacedBody& a, const PlacedBody& b, double part) {
     return std::max(a.shape->data().hides_most, b.shape->data().hides_most) > 0.9999 * part * smaller_size(a, b);
+}
+
+/// Metres: two edges of which the root of the product of what both hide is less have no speculative contact while the
+/// pair does not hurry (docs/internals/speculative.md).
+inline double least_hidden_ahead(const PlacedBody& a, const PlacedBody& b, double margin) {
+    return 0.1 * std::min(margin, speculative_share * smaller_size(a, b));
+}
+/// Whether most edges of a hide less than that: then those that hide more are sought, of either body.
+inline bool seeks_what_hides(const PlacedBody& a, const PlacedBody& b, double margin) {
+    return a.shape->data().hides_half < least_hidden_ahead(a, b, margin) && margin < smaller_size(a, b);
 }
 
 /// Of a pair: the edges of a near b, and those of b near a; each sorted by edge and face.

@@ -20,32 +20,33 @@ void BlockSearch::make_room(Device& device, std::size_t blocks) {
 }
 
 void BlockSearch::count(const Update& update, const Array<kernels::DirectedPair>& pairs, std::size_t pair_count,
-                        const Array<float>& horizons, const Array<float>& least, const Array<kernels::Totals>& totals,
-                        std::size_t at, std::size_t room) {
+                        const Array<float>& horizons, const Array<kernels::EdgeChoice>& choices,
+                        const Array<kernels::Totals>& totals, std::size_t at, std::size_t room) {
     const ShapeStore::Arrays& arrays = update.arrays();
     pair_count_ = pair_count;
     counts_.resize(update.device, 1, pair_count);
     block_masks_.resize(update.device, MASK_WORDS * pair_count);
     safe_distances_.resize(update.device, horizons.size());
     launch<KernelId::count_clusters>(update.device, pair_count, static_cast<kernels::uint>(sources_), pairs, horizons,
-                                     least, arrays.headers, arrays.memory, counts_.values(), safe_distances_,
+                                     choices, arrays.headers, arrays.memory, counts_.values(), safe_distances_,
                                      block_masks_);
     counts_.scan(update.device, pair_count, totals, at, room);
 }
 
 void BlockSearch::write(const Update& update, const Array<kernels::DirectedPair>& pairs, const Count& items,
-                        const Array<float>& horizons, const Array<float>& least) const {
+                        const Array<float>& horizons, const Array<kernels::EdgeChoice>& choices) const {
     const ShapeStore::Arrays& arrays = update.arrays();
-    launch<KernelId::write_clusters>(update.device, items, static_cast<kernels::uint>(sources_), pairs, horizons, least,
-                                     arrays.headers, arrays.memory, block_masks_, counts_.firsts(), blocks_,
+    launch<KernelId::write_clusters>(update.device, items, static_cast<kernels::uint>(sources_), pairs, horizons,
+                                     choices, arrays.headers, arrays.memory, block_masks_, counts_.firsts(), blocks_,
                                      ray_counts_.stride(), ray_counts_.values());
 }
 
 void BlockSearch::find(const Update& update, const Array<kernels::DirectedPair>& pairs, const Array<float>& horizons,
-                       const Array<float>& least, const Array<kernels::Totals>& totals, std::size_t at) {
+                       const Array<kernels::EdgeChoice>& choices, const Array<kernels::Totals>& totals,
+                       std::size_t at) {
     make_room(update.device, std::max(blocks_.size(), least_room));
-    count(update, pairs, pairs.size(), horizons, least, totals, at, blocks_.size());
-    write(update, pairs, items_of(totals, at, pairs.size()), horizons, least);
+    count(update, pairs, pairs.size(), horizons, choices, totals, at, blocks_.size());
+    write(update, pairs, items_of(totals, at, pairs.size()), horizons, choices);
     found_ = results_of(totals, at, blocks_.size());
 }
 
@@ -83,11 +84,13 @@ void BlockSearch::count_rays(const Update& update, const Array<kernels::Directed
 
 void BlockSearch::count_edges(const Update& update, const Array<kernels::DirectedPair>& pairs,
                               const Array<kernels::DirectedPair>& next, const Array<float>& thrown,
-                              const Array<float>& margins, const Array<float>& ahead,
-                              const Array<kernels::Totals>& totals, std::size_t at, std::size_t room) {
+                              const Array<float>& margins, const Array<kernels::EdgeChoice>& choices,
+                              const Array<float>& ahead, const Array<kernels::Totals>& totals, std::size_t at,
+                              std::size_t room) {
     const ShapeStore::Arrays& arrays = update.arrays();
     launch<KernelId::count_edges>(update.device, found_, sources_ == Sources::points ? 1u : 0u, pairs, next, thrown,
-                                  margins, ahead, arrays.headers, arrays.memory, blocks_, ray_counts_.values());
+                                  margins, choices, ahead, arrays.headers, arrays.memory, blocks_,
+                                  ray_counts_.values());
     ray_counts_.scan(update.device, found_, totals, at, room);
 }
 

@@ -16,12 +16,11 @@ public:
     enum class Sources : kernels::uint { vertices, edges, points };
     explicit BlockSearch(Sources sources = Sources::vertices) : sources_(sources) {}
 
-    /// The blocks of all pairs that reach into the bounds; horizons as below. least: of edges, with horizons, those
-    /// that hide less (metres, by pair; docs/internals/edges.md) are left out, as far as whole blocks do; may be empty.
-    /// Does not wait: totals[at] says on the device how many there are. If they have too little room, none is written
-    /// (had_room()).
+    /// The blocks of all pairs that reach into the bounds; horizons as below. choices: of edges, with horizons,
+    /// by pair, as far as whole blocks are alike; may be empty. Does not wait: totals[at] says on the device how many
+    /// there are. If they have too little room, none is written (had_room()).
     void find(const Update& update, const Array<kernels::DirectedPair>& pairs, const Array<float>& horizons,
-              const Array<float>& least, const Array<kernels::Totals>& totals, std::size_t at);
+              const Array<kernels::EdgeChoice>& choices, const Array<kernels::Totals>& totals, std::size_t at);
     /// The blocks of the first pair_count pairs that reach into the bounds and, if there are horizons, could be in
     /// contact before they have moved by horizons[p] (metres, rounding included). Uses totals[at]. Waits for the device
     /// once, and makes as much room as the blocks need.
@@ -40,7 +39,8 @@ public:
     /// empty.
     void count_edges(const Update& update, const Array<kernels::DirectedPair>& pairs,
                      const Array<kernels::DirectedPair>& next, const Array<float>& thrown, const Array<float>& margins,
-                     const Array<float>& ahead, const Array<kernels::Totals>& totals, std::size_t at, std::size_t room);
+                     const Array<kernels::EdgeChoice>& choices, const Array<float>& ahead,
+                     const Array<kernels::Totals>& totals, std::size_t at, std::size_t room);
     /// Of edges, in memory that host and device share: how far pair p can move before one that is not cast comes within
     /// its margin, metres; margin: with half the way to the next step.
     double clear(std::size_t p, float margin, float tolerance);
@@ -85,10 +85,10 @@ public:
 private:
     void make_room(Device& device, std::size_t blocks);
     void count(const Update& update, const Array<kernels::DirectedPair>& pairs, std::size_t pair_count,
-               const Array<float>& horizons, const Array<float>& least, const Array<kernels::Totals>& totals,
-               std::size_t at, std::size_t room);
+               const Array<float>& horizons, const Array<kernels::EdgeChoice>& choices,
+               const Array<kernels::Totals>& totals, std::size_t at, std::size_t room);
     void write(const Update& update, const Array<kernels::DirectedPair>& pairs, const Count& items,
-               const Array<float>& horizons, const Array<float>& least) const;
+               const Array<float>& horizons, const Array<kernels::EdgeChoice>& choices) const;
 
     Sources sources_;
     Columns counts_, ray_counts_;

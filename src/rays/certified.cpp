@@ -259,7 +259,7 @@ void CertifiedRays::cast(const Update& update, RayBatch& batch) {
 // width; nor is one that found much where nothing was before.
 NearLists::Search CertifiedRays::search_of(const DueNear& due, const KeptNear& kept, bool moves, double margin) {
     const bool empty = kept.count() == 0;
-    NearLists::Search search{due.pair, 0, 0, static_cast<float>(margin), 0, moves, kept.reach};
+    NearLists::Search search{due.pair, 0, 0, static_cast<float>(margin), 0, 0, moves, kept.reach};
     if (due.once) return search;
     double more = empty ? double(kept.reach) * std::clamp(6 * due.speed, 0.005 * due.size, 0.015 * due.size)
                         : std::clamp(6 * due.speed, 0.002 * due.size, 0.006 * due.size);
@@ -306,6 +306,9 @@ void CertifiedRays::find_edges(const Update& update, const ByPair<kernels::Local
             if (in_contact && !hides_more(a, b, least_hidden)) continue;
             NearLists::Search& search = searches_.emplace_back(search_of(due, before, due.moves, double(slack.margin)));
             search.least = in_contact ? static_cast<float>(hidden_length(a, b)) : 0;
+            const double ahead = speculative_margin(update.settings, a, b);
+            if (update.settings.is_speculative() && seeks_what_hides(a, b, ahead))
+                search.least_ahead = static_cast<float>(0.9999 * least_hidden_ahead(a, b, ahead));
         }
     edges_.find(update, searches_, table_, batch);
 }

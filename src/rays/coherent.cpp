@@ -186,7 +186,7 @@ void CoherentRays::find_rays(const Update& update, RayBatch& batch) {
     batch.count = Count(followed_count_);
     if (full_count_ > 0) {
         const Array<float> none;
-        near_.find(update, device_wide_, skips_outside_ ? device_reaches_ : none, none, batch.totals,
+        near_.find(update, device_wide_, skips_outside_ ? device_reaches_ : none, {}, batch.totals,
                    RayBatch::block_sum);
         launch<KernelId::count_near_rays>(device, near_.found(), near_.ray_counts().stride(), device_wide_,
                                           device_reaches_, device_margins_, arrays.headers, arrays.memory,

@@ -138,8 +138,7 @@ void DuePairs::check_slice(const Update& update, CertifiedPairs& table, std::uin
     // A pair that hurries needs what its whole way passes.
     const auto is_due = [](double slack, double way) { return !(slack > 0) || !(slack > way); };
     const auto way_of = [&](std::uint32_t i, const Slack& slack) {
-        const double way = speculative ? update.motion.pair_way(update.pairs[i]) : 0;
-        return way > double(slack.margin) ? way : 0;
+        return speculative ? update.motion.pair_way(update.pairs[i], double(slack.margin)) : 0;
     };
     // How much farther than the margin some vertices are asked: half the way, where a body is thinner than that.
     const auto thrown_of = [](const Slack& slack, double way) {

@@ -23,7 +23,7 @@ void NearLists::clear() {
 
 void NearLists::find(const Update& update, std::span<const Search> due, CertifiedPairs& table, RayBatch& batch) {
     if (due.empty()) {
-        resize(update.device, 0, pairs_, next_, margins_, ahead_, least_);
+        resize(update.device, 0, pairs_, next_, margins_, ahead_, choices_);
         found_.set(update.executor, {}, std::identity(), 0);
         return rays_.rest();
     }
@@ -33,7 +33,7 @@ void NearLists::find(const Update& update, std::span<const Search> due, Certifie
 
 void NearLists::find_some(const Update& update, std::span<const Search> due, CertifiedPairs& table, RayBatch& batch) {
     const bool move = std::ranges::any_of(due, &Search::moves);
-    resize(update.device, 2 * due.size(), pairs_, margins_, ahead_, least_);
+    resize(update.device, 2 * due.size(), pairs_, margins_, ahead_, choices_);
     next_.resize(update.device, move ? pairs_.size() : 0);
     const bool points = kept_ == &CertifiedPair::points;
     update.executor.each(due.size(), 128, [&](std::uint32_t k) {
@@ -44,13 +44,14 @@ void NearLists::find_some(const Update& update, std::span<const Search> due, Cer
                 place_source(source, target, relative_pose(target.next, source.next), next_.in_place()[2 * k + side]);
             else if (move)
                 next_.in_place()[2 * k + side] = pairs_.in_place()[2 * k + side];
-            margins_.in_place()[2 * k + side] = due[k].margin + (side == 0 || points ? due[k].speculative : 0);
+            const bool is_ahead = side == 0 || points || due[k].least_ahead > 0;
+            margins_.in_place()[2 * k + side] = due[k].margin + (is_ahead ? due[k].speculative : 0);
             ahead_.in_place()[2 * k + side] = due[k].ahead;
-            least_.in_place()[2 * k + side] = due[k].least;
+            choices_.in_place()[2 * k + side] = {due[k].least, due[k].least_ahead, due[k].speculative};
         }
     });
     do {
-        rays_.cast(update, pairs_, next_, {margins_, ahead_, least_}, batch);
+        rays_.cast(update, pairs_, next_, {margins_, ahead_, choices_}, batch);
         const Piece pieces[] = {batch.totals.piece(batch.sums), rays_.found().piece()};
         update.device.queue().read(pieces);
         check_sums(batch.sums);
@@ -83,11 +84,11 @@ void NearLists::find_some(const Update& update, std::span<const Search> due, Cer
 std::uint64_t NearLists::bytes() const {
     return edges_.capacity() * sizeof(kernels::NearEdge) + rays_.bytes() + found_.all().size_bytes()
            + next_.size() * sizeof(kernels::DirectedPair)
-           + pairs_.size() * (sizeof(kernels::DirectedPair) + 3 * sizeof(float));
+           + pairs_.size() * (sizeof(kernels::DirectedPair) + 2 * sizeof(float) + sizeof(kernels::EdgeChoice));
 }
 
 void NearLists::trim() {
-    free_all(pairs_, next_, margins_, ahead_, least_, found_);
+    free_all(pairs_, next_, margins_, ahead_, choices_, found_);
     rays_ = NearRays(rays_.sources());
 }
 

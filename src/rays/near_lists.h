@@ -18,6 +18,8 @@ public:
         float margin, ahead;  ///< metres beyond what is needed that they are sought; beyond that, that bounds are
         float speculative;    ///< of what is needed: metres within which they have speculative contacts
         float least;          ///< metres: edges that hide less may be left out (docs/internals/edges.md)
+        float least_ahead;    ///< metres: edges that hide less have speculative contacts with edges that hide more, and
+                              ///< are found near these; 0: all of a are sought
         bool moves;           ///< what they come near on their way to the next step is needed
         float reach = 1;      ///< as KeptNear, of the last list
         bool is_wide = false; ///< sought as far as nothing may be near
@@ -47,7 +49,8 @@ private:
 
     Array<kernels::DirectedPair> pairs_; ///< both directions of some of those due
     Array<kernels::DirectedPair> next_;  ///< where they will be, if any moves
-    Array<float> margins_, ahead_, least_;
+    Array<float> margins_, ahead_;
+    Array<kernels::EdgeChoice> choices_;
     NearRays rays_;
     KeptNear CertifiedPair::*kept_;
     double Slack::*slack_;

@@ -33,18 +33,18 @@ void NearRays::cast(const Update& update, const Array<kernels::DirectedPair>& pa
     launch<KernelId::find_margins>(device, pairs.size(), pairs, next, reach.more, reach.ahead, arrays.headers, margins_,
                                    horizons_, half_way_, thrown_);
     const Array<kernels::DirectedPair>& placed = next.size() > 0 ? half_way_ : pairs;
-    search_.find(update, placed, horizons_, reach.least, totals, sum(RayBatch::edge_block_sum));
-    search_.count_edges(update, placed, next, thrown_, margins_, reach.ahead, totals, sum(RayBatch::edge_ray_sum),
-                        room);
+    search_.find(update, placed, horizons_, reach.choices, totals, sum(RayBatch::edge_block_sum));
+    search_.count_edges(update, placed, next, thrown_, margins_, reach.choices, reach.ahead, totals,
+                        sum(RayBatch::edge_ray_sum), room);
     search_.write_rays(update, totals, sum(RayBatch::edge_ray_sum), 0, rays_);
     const Count count = results_of(totals, sum(RayBatch::edge_ray_sum), room);
-    launch<KernelId::cast_edges>(device, count, vertices, placed, next, thrown_, margins_, arrays.headers,
-                                 arrays.memory, rays_, hits_, counts_.values());
+    launch<KernelId::cast_edges>(device, count, vertices, placed, next, thrown_, margins_, reach.choices,
+                                 arrays.headers, arrays.memory, rays_, hits_, counts_.values());
     const Array<kernels::NearEdge>& found = found_.room(device);
     counts_.scan(device, count, totals, sum(RayBatch::edge_sum), found.size());
     launch<KernelId::write_edges>(device, items_of(totals, sum(RayBatch::edge_sum), room), vertices, placed, next,
-                                  thrown_, margins_, arrays.headers, arrays.memory, rays_, hits_, counts_.firsts(),
-                                  found);
+                                  thrown_, margins_, reach.choices, arrays.headers, arrays.memory, rays_, hits_,
+                                  counts_.firsts(), found);
 }
 
 bool NearRays::had_room(Device& device, const RayBatch& batch) {

@@ -16,7 +16,7 @@ public:
     /// By directed pair, metres; each may be empty.
     struct Reach {
         const Array<float>&more, &ahead; ///< beyond what is needed; beyond that, for clear() alone
-        const Array<float>& least;       ///< edges that hide less may be left out (docs/internals/edges.md)
+        const Array<kernels::EdgeChoice>& choices;
     };
     /// pairs: both directions of each pair side by side. next: the same at the next step, for edges that come near on
     /// their way there; may be empty.

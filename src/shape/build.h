@@ -17,7 +17,7 @@ std::vector<Vec3> angle_weighted_normals(const ShapeData& shape, std::span<const
 /// Each vertex's share of the surface, m^2: a third of the area of its triangles, summed in double and rounded once.
 std::vector<float> measure_areas(const ShapeData& shape);
 
-/// Fills sharp_edges, longest_edge, hides, hides_most and vertex_triangle. Needs `neighbours`.
+/// Fills sharp_edges, longest_edge, hides, hides_most, hides_half and vertex_triangle. Needs `neighbours`.
 void find_sharp_edges(ShapeData& shape, std::span<const Vec3> normals);
 
 /// Fills component_vertices and components. Needs vertex_triangle.

@@ -70,10 +70,11 @@ void order_by_place(Sources all, Executor& executor) {
     for_each_part(executor, parts, order_below);
 }
 
-// Where few edges are asked, those that hide much (near_edges.h, least_hidden), these lie in blocks of their own; the
-// second group is for pairs whose other body is four times smaller. Parts of the shape's diagonal.
+// Where few edges are asked, those that hide much (near_edges.h), these lie in blocks of their own: those that count
+// beside a contact, the same for pairs whose other body is four times smaller, and those with speculative contacts of
+// their own. Parts of the shape's diagonal.
 void order(Sources all, const ShapeData& shape, Executor& executor) {
-    for (const double share : {0.01, 0.0025}) {
+    for (const double share : {0.01, 0.0025, 0.00025}) {
         const auto most = [](const Source& s) { return std::pair(-s.hides, s.name); };
         auto count = static_cast<std::size_t>(
             std::ranges::count_if(all, [&](const Source& s) { return double(s.hides) > share * shape.diagonal; }));
@@ -133,8 +134,7 @@ std::vector<Source> edges_of(const ShapeData& shape) {
 }
 Lane edge_lane(const ShapeData& shape, uint edge) {
     const auto [from, to] = ends_of(shape, edge);
-    const Vec3 half = 0.5 * (to - from);
-    return {rounded(half), static_cast<float>(length(half))};
+    return {rounded(0.5 * (to - from)), shape.hides[edge / 3][edge % 3]};
 }
 
 std::size_t blocks_of(std::size_t sources) {

@@ -52,6 +52,7 @@ struct Shape::Data : TriangleTree {
     double radius = 0;
     double longest_edge = 0; ///< metres
     double hides_most = 0;   ///< of `hides`, the most
+    double hides_half = 0;   ///< half of the edges hide no more
     double grain = 0; ///< about as long as an edge: the diagonal over the root of the number of triangles, metres
     double reach = 0; ///< largest distance of a vertex from centre, metres
 

@@ -4,6 +4,7 @@
 #include "shape/build.h"
 
 #include <algorithm>
+#include <vector>
 
 namespace raycontact {
 
@@ -30,6 +31,8 @@ void find_sharp_edges(ShapeData& shape, std::span<const Vec3> normals) {
     shape.sharp_edges.assign(triangles.size(), 0);
     shape.hides.assign(triangles.size(), {});
     shape.vertex_triangle.assign(shape.points.size(), Shape::no_triangle);
+    std::vector<float> hides;
+    hides.reserve(2 * triangles.size());
     for (std::uint32_t t = 0; t < triangles.size(); ++t) {
         for (std::size_t c = 0; c < 3; ++c) {
             std::uint32_t& first = shape.vertex_triangle[triangles[t][c]];
@@ -39,11 +42,15 @@ void find_sharp_edges(ShapeData& shape, std::span<const Vec3> normals) {
             const double size = length(shape.corner(t, (c + 1) % 3) - shape.corner(t, c));
             shape.longest_edge = std::max(shape.longest_edge, size);
             shape.hides[t][c] = static_cast<float>(0.5 * size * ridge(shape, normals, t, c));
+            hides.push_back(shape.hides[t][c]);
             shape.hides_most = std::max(shape.hides_most, double(shape.hides[t][c]));
             if (across == Shape::no_triangle || !(dot(normals[t], normals[across]) > flat_cosine))
                 shape.sharp_edges[t] = static_cast<std::uint8_t>(shape.sharp_edges[t] | 1u << c);
         }
     }
+    const auto half = hides.begin() + std::ssize(hides) / 2;
+    std::ranges::nth_element(hides, half);
+    if (half != hides.end()) shape.hides_half = double(*half);
 }
 
 void find_components(ShapeData& shape) {

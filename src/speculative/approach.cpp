@@ -101,7 +101,8 @@ std::optional<Approach> Approaches::first_met() const {
 // Whether every list of faces has what lies at a point.
 bool Approaches::is_listed(const Vec3& point) const {
     if (from_ == way_[0] && to_ == way_[1]) return true;
-    return length(point - nearest_of(point, way_[0], way_[1], way_[1]).point) <= reach_;
+    const Vec3& end = way_[body_.moves ? 1 : 0];
+    return length(point - nearest_of(point, way_[0], end, end).point) <= reach_;
 }
 
 // Of the places around: an edge is one with both its faces, a corner with all that it shares an edge with.

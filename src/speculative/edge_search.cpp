@@ -136,24 +136,44 @@ void change_least(const SpeculativePair& pair, FeatureContact& contact, const Ed
 class Search {
 public:
     Search(const SpeculativePair& pair, double least, std::vector<FeatureContact>& found)
-        : pair_(pair), body_(pair.bodies[0]), least_(least), found_(found), touching_(found.size()) {}
+        : pair_(pair), body_(pair.bodies[0]), least_(least), ahead_(least_hidden_ahead(pair.a, pair.b, pair.margin)),
+          from_both_(seeks_what_hides(pair.a, pair.b, pair.margin)), found_(found), touching_(found.size()) {}
 
-    void find(std::span<const NearEdge> near) {
-        for (std::size_t begin = 0, end = 0; begin < near.size(); begin = end) {
-            const std::uint32_t number = near[begin].edge;
-            while (end < near.size() && near[end].edge == number) ++end;
-            // An edge is asked with the lowest of its faces.
-            const ShapeData& a = body_.source;
-            if (is_sharp(a, number) && hidden_by(a, number) > least_ && is_convex(a, number))
-                find(edge_of_a(body_, number), near.subspan(begin, end - begin));
-        }
+    void find(const NearEdges& near) {
+        by_edge(near[0], [&](std::uint32_t number, std::span<const NearEdge> faces) {
+            if (counts(body_.source, number)) find(edge_of_a(body_, number), faces);
+        });
+        if (!from_both_) return;
+        by_edge(near[1], [&](std::uint32_t number, std::span<const NearEdge> faces) {
+            if (hidden_by(body_.target, number) > ahead_ && counts(body_.target, number))
+                find_small(edge_of(body_.target, number), faces);
+        });
     }
 
 private:
+    // Calls visit(edge, its near faces) for each.
+    template <class Visit>
+    static void by_edge(std::span<const NearEdge> near, Visit&& visit) {
+        for (std::size_t begin = 0, end = 0; begin < near.size(); begin = end) {
+            while (end < near.size() && near[end].edge == near[begin].edge) ++end;
+            visit(near[begin].edge, near.subspan(begin, end - begin));
+        }
+    }
+    // An edge is asked with the lowest of its faces.
+    bool counts(const ShapeData& shape, std::uint32_t edge) const {
+        return is_sharp(shape, edge) && hidden_by(shape, edge) > least_ && is_convex(shape, edge);
+    }
+    // Whether two edges hide enough to have a contact while they are near.
+    bool hide(std::uint32_t edge, std::uint32_t other) const {
+        return hidden_by(body_.source, edge) * hidden_by(body_.target, other) > ahead_ * ahead_;
+    }
+
     void find(const Edge& edge, std::span<const NearEdge> faces) {
         Box box = box_of(edge.ends[0], edge.ends[1], pair_.margin);
         const Box then = box_of(edge.ends[0] + edge.ways[0], edge.ends[1] + edge.ways[1], pair_.margin);
         box = {least(box.low, then.low), most(box.high, then.high)};
+        const bool is_near = !from_both_ || hidden_by(body_.source, edge.number) > ahead_;
+        if (!is_near && !body_.moves) return;
         for (const NearEdge& one : faces)
             for (std::uint32_t k = 0; k < 3; ++k) {
                 const std::uint32_t number = 3 * one.face + k;
@@ -161,7 +181,24 @@ private:
                 if (!is_sharp(b, number) || !(hidden_by(b, number) > least_)) continue; // nor if another face is lower
                 const Edge other = edge_of(b, number);
                 if (!box.touches(box_of(other.ends[0], other.ends[1], 0))) continue;
-                if (!body_.moves || !will_meet(edge, other)) find_near(edge, other);
+                if (const auto meeting = meeting_of(edge, other))
+                    tell(edge, other, meeting->when, meeting->at, meeting->normal);
+                else if (is_near && hide(edge.number, number))
+                    find_near(edge, other);
+            }
+    }
+
+    // Of an edge of b those of a that hide little.
+    void find_small(const Edge& other, std::span<const NearEdge> faces) {
+        const Box box = box_of(other.ends[0], other.ends[1], pair_.margin);
+        for (const NearEdge& one : faces)
+            for (std::uint32_t k = 0; k < 3; ++k) {
+                const std::uint32_t number = 3 * one.face + k;
+                if (hidden_by(body_.source, number) > ahead_ || !hide(number, other.number)) continue;
+                if (!counts(body_.source, number)) continue;
+                const Edge edge = edge_of_a(body_, number);
+                if (box.touches(box_of(edge.ends[0], edge.ends[1], 0)) && !meeting_of(edge, other))
+                    find_near(edge, other);
             }
     }
 
@@ -179,7 +216,14 @@ private:
                       <= arc;
     }
 
-    bool will_meet(const Edge& edge, const Edge& other) {
+    /// Where a moving edge meets a resting one.
+    struct Meeting {
+        double when; ///< part of the step
+        Places at;
+        Vec3 normal; ///< out of b
+    };
+    std::optional<Meeting> meeting_of(const Edge& edge, const Edge& other) const {
+        if (!body_.moves) return std::nullopt;
         for (const double t : meetings(edge, other)) {
             if (!(t >= 0 && t <= 1)) continue;
             const Vec3 along = edge.along(t);
@@ -188,11 +232,9 @@ private:
             const Vec3 n = unit(cross(along, other.along(0)));
             const double lean = dot(n, edge.way((*at)[0]));
             const Vec3 out = lean > 0 ? -1.0 * n : n;
-            if (lean == 0 || !is_in_arcs(edge, other, t, out)) continue;
-            tell(edge, other, t, *at, out);
-            return true;
+            if (lean != 0 && is_in_arcs(edge, other, t, out)) return Meeting{t, *at, out};
         }
-        return false;
+        return std::nullopt;
     }
 
     void find_near(const Edge& edge, const Edge& other) {
@@ -224,7 +266,9 @@ private:
 
     const SpeculativePair& pair_;
     const OneWay& body_;
-    double least_;
+    double least_;   ///< metres: edges that hide less are not asked
+    double ahead_;   ///< least_hidden_ahead()
+    bool from_both_; ///< seeks_what_hides()
     std::vector<FeatureContact>& found_;
     std::size_t touching_; ///< of found_: what was there
 };
@@ -242,7 +286,7 @@ void change_least(const SpeculativePair& pair, FeatureContact& contact) {
     change_least(pair, contact, edge, other, {at(edge, contact.point), at(other, contact.point)});
 }
 
-void find_speculative_edges(const SpeculativePair& pair, std::span<const NearEdge> near, double least,
+void find_speculative_edges(const SpeculativePair& pair, const NearEdges& near, double least,
                             std::vector<FeatureContact>& found) {
     Search(pair, least, found).find(near);
 }

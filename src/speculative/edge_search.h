@@ -10,9 +10,8 @@
 namespace raycontact {
 
 /// Adds the speculative contacts of two edges in any order, but for those that `found` has already
-/// (docs/internals/speculative.md). near: the edges of a and the faces that they may come near. least: metres; edges
-/// that hide less are left out.
-void find_speculative_edges(const SpeculativePair& pair, std::span<const NearEdge> near, double least,
+/// (docs/internals/speculative.md). least: metres; edges that hide less are left out.
+void find_speculative_edges(const SpeculativePair& pair, const NearEdges& near, double least,
                             std::vector<FeatureContact>& found);
 
 /// Of two edges that touch, no deeper than the margin: what averts that and changes the motion least.

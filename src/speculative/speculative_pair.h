@@ -23,7 +23,7 @@ inline Box box_of(const Vec3& p, const Vec3& q, double around) {
 struct OneWay {
     const ShapeData &source, &target;
     Pose now, next;
-    bool moves;    ///< a point may go farther than the margin until the next step
+    bool moves;    ///< as seen from either, points of the other may go farther than the margin until the next step
     double thrown; ///< how far from its way what stops the body elsewhere may throw a point, metres; 0: it stays
 };
 

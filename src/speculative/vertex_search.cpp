@@ -26,6 +26,16 @@ Vec3 normal_of(const kernels::LocalContact& c) {
     return {c.normal.x, c.normal.y, c.normal.z};
 }
 
+// Whether all faces at a vertex look as its contact does, so it has nothing to say of another plane.
+bool is_spoken_for(const OneWay& body, const kernels::LocalContact& contact) {
+    const Vec3 inward = -1.0 * rotated_back(body.now.rotation, normal_of(contact));
+    return !any_triangle_at(body.source, contact.vertex, [&](std::uint32_t t, std::uint32_t) {
+        const Vec3 area = area_normal(body.source, t);
+        const double facing = dot(area, inward);
+        return !(facing > 0 && facing * facing > same_plane * same_plane * dot(area, area));
+    });
+}
+
 } // namespace
 
 void VertexSearch::find(const SpeculativePair& pair, const NearEdges& near,
@@ -38,7 +48,9 @@ void VertexSearch::find(const SpeculativePair& pair, const NearEdges& near,
         followers_.clear();
         by_vertex(near[own], [&](std::uint32_t v, std::span<const NearEdge> faces) {
             const auto at = std::ranges::lower_bound(touching[own], v, {}, &kernels::LocalContact::vertex);
-            find(pair, side, v, faces, at != touching[own].end() && at->vertex == v ? &*at : nullptr, found);
+            const bool touches = at != touching[own].end() && at->vertex == v;
+            if (touches && is_spoken_for(pair.bodies[own], *at)) return;
+            find(pair, side, v, faces, touches ? &*at : nullptr, found);
         });
         if (followers_.empty()) continue;
         std::ranges::sort(followers_, {}, &Follower::vertex);

@@ -95,12 +95,12 @@ public:
         return found;
     }
 
-    /// Of the source's edges against the target's; sharp, convex ones.
+    /// Of the source's edges against the target's; sharp, convex ones that hide enough.
     std::vector<Place> of_edges() const {
         std::vector<Place> found;
         for (const Edge& e : edges_of(view_.source.solid))
             for (const Edge& g : edges_of(view_.target.solid))
-                if (e.sharp && !e.concave && g.sharp && !g.concave) ask(e, g, found);
+                if (e.sharp && !e.concave && g.sharp && !g.concave && hidden(e, g) > 0.999) ask(e, g, found);
         return found;
     }
 
@@ -142,6 +142,11 @@ private:
         return dot(unit(p - at), unit(sum));
     }
 
+    // How deep two edges can be in each other, by what makes them count.
+    double hidden(const Edge& e, const Edge& g) const {
+        return std::sqrt(e.hides * g.hides) / (0.1 * std::min(margin_, 0.0025 * view_.size()));
+    }
+
     void ask(const Edge& e, const Edge& g, std::vector<Place>& found) const {
         const Solid &source = view_.source.solid, &target = view_.target.solid;
         const Vec3 p = view_.at_now(source.vertices[e.from]), along = view_.at_now(source.vertices[e.to]) - p;
@@ -157,7 +162,7 @@ private:
         if (gap > margin_ + tiny_ || gap < 10 * tiny_) return;
         const double by = std::max(leaves_arc(source, e, -n, along, true), leaves_arc(target, g, n, other, false));
         if (by > tolerance_) return;
-        const bool sure = by < -1e-4 && gap < margin_ - tiny_ && within > 1e-6 && sine > 2e-3;
+        const bool sure = by < -1e-4 && gap < margin_ - tiny_ && within > 1e-6 && sine > 2e-3 && hidden(e, g) > 1.001;
         found.push_back({true, e.number, g.number, n, gap, sure});
     }
 

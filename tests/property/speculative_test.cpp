@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Speculative contacts against the reference; what they leave as it is; what a body is expected to do.
+#include "prepared_shape.h"
+#include "property/crowds.h"
 #include "property/speculative_reference.h"
 #include "reference/meshes.h"
+#include "scenes/models/model.h"
 
 #include <raycontact/error.h>
 #include <raycontact/query.h>
@@ -9,6 +12,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdio>
 #include <iterator>
 #include <limits>
@@ -468,6 +473,106 @@ TEST(Speculative, AThinBodySeesAsFarAsItMayBeThrown) {
     std::printf("[ thin     ] %zu told, %zu not\n", told, beyond);
     EXPECT_GT(told, 50u);
     EXPECT_GT(beyond, 50u);
+}
+
+/// A disc whose rim has no vertices but at its borders.
+Mesh disc_mesh(std::uint32_t sides) {
+    Mesh mesh;
+    mesh.vertices = {{0, 0, -0.1}, {0, 0, 0.1}};
+    for (std::uint32_t i = 0; i < sides; ++i) {
+        const double angle = 2 * 3.14159265358979 * i / sides;
+        for (const double z : {-0.1, 0.1}) mesh.vertices.push_back({std::cos(angle), std::sin(angle), z});
+    }
+    for (std::uint32_t i = 0; i < sides; ++i) {
+        const std::uint32_t p = 2 + 2 * i, q = 2 + 2 * ((i + 1) % sides);
+        for (const auto& triangle : {std::array{0u, q, p}, {1u, p + 1, q + 1}, {p, q, q + 1}, {p, q + 1, p + 1}})
+            mesh.triangles.push_back(triangle);
+    }
+    return mesh;
+}
+
+// Two edges that hide little have no contact before bodies touch. Others have, wherever two bodies meet.
+TEST(Speculative, FineBodiesAreSeenBeforeTheyTouch) {
+    std::vector<std::shared_ptr<const Shape>> shapes{prepared_shape(disc_mesh(1000)), prepared_shape(disc_mesh(200)),
+                                                     prepared_shape(box_mesh({1.5, 0.5, 0.4}))};
+    for (const char* kind : {"sphere", "torus", "knot", "gear"})
+        for (const std::uint32_t triangles : {4000u, 20000u})
+            shapes.push_back(prepared_shape(scenes::scene_model(kind, triangles).mesh));
+    Random random(66);
+    double latest = 1;
+    for (int i = 0; i < 600; ++i) {
+        const auto count = static_cast<std::uint32_t>(shapes.size());
+        const auto &a = shapes[i % 4 == 0 ? 2 : random.below(count)], &b = shapes[random.below(count)];
+        Settings settings = speculative_settings();
+        settings.features = Features::edges;
+        Scene scene(settings);
+        const Pose pose_a = random.rotation();
+        Pose pose_b = random.rotation();
+        pose_b.translation = 6 * random.direction();
+        scene.add(a, pose_a);
+        const BodyId moving = scene.add(b, pose_b);
+        const auto size = [](const Shape& shape) { return length(shape.box_max() - shape.box_min()); };
+        const double margin = speculative_share * std::min(size(*a), size(*b));
+        const auto gap = [&] { return distance(*a, pose_a, *b, pose_b); };
+        // As far as nothing can be told, then by a twentieth of the margin.
+        for (double apart = gap()->distance; apart > 1.1 * margin; apart = gap()->distance) {
+            const Vec3 way = gap()->point_a - gap()->point_b;
+            pose_b.translation = pose_b.translation + (1 - margin / apart) * way;
+        }
+        const Vec3 step = 0.05 * margin * unit(gap()->point_a - gap()->point_b);
+        for (int k = 0; k < 40; ++k) {
+            scene.set_pose(moving, pose_b);
+            scene.find_contacts();
+            if (!scene.contacts().empty()) break;
+            pose_b.translation = pose_b.translation + step;
+        }
+        ASSERT_FALSE(scene.contacts().empty()) << "approach " << i;
+        EXPECT_TRUE(scene.contacts()[0].is_speculative()) << "approach " << i;
+        EXPECT_GT(gap()->distance, 0.9 * margin) << "approach " << i;
+        latest = std::min(latest, gap()->distance / margin);
+    }
+    std::printf("[ approach ] the latest told at %.2f of the margin\n", latest);
+}
+
+// As seen from one that turns the other flies past it. Both methods ask the same.
+TEST(Speculative, BodiesThatTurnBesideEachOther) {
+    std::vector<std::shared_ptr<const Shape>> shapes;
+    for (const char* kind : {"gear", "torus", "sphere"})
+        shapes.push_back(prepared_shape(scenes::scene_model(kind, 4000).mesh));
+    Random random(67);
+    std::size_t contacts = 0;
+    for (int i = 0; i < 60; ++i) {
+        const auto &a = shapes[random.below(3)], &b = shapes[random.below(3)];
+        Settings settings = speculative_settings();
+        settings.features = Features::edges;
+        Scene certified(settings);
+        settings.method = Method::standard;
+        Scene standard(settings);
+        std::array poses{random.rotation(), random.rotation()};
+        poses[1].translation = 3 * random.direction();
+        const double margin = speculative_share * length(a->box_max() - a->box_min());
+        const auto gap = distance(*a, poses[0], *b, poses[1]);
+        poses[1].translation =
+            poses[1].translation + (1 - 0.4 * margin / gap->distance) * (gap->point_a - gap->point_b);
+        for (Scene* scene : {&certified, &standard}) {
+            scene->add(a, poses[0]);
+            scene->add(b, poses[1]);
+        }
+        const double turn = margin * std::exp(random.uniform(-2, 2)); // of bodies about 1 m in radius
+        const Vec3 axis = random.direction();
+        for (int k = 0; k < 30; ++k) {
+            for (std::uint32_t body = i % 2; body < 2; ++body) {
+                const Vec3 at = poses[body].translation;
+                poses[body] = composed(small_rotation(axis, turn), poses[body]);
+                poses[body].translation = at;
+                for (Scene* scene : {&certified, &standard}) scene->set_pose({body}, poses[body]);
+            }
+            for (Scene* scene : {&certified, &standard}) scene->find_contacts();
+            ASSERT_TRUE(same_bits(standard.contacts(), certified.contacts())) << "pair " << i << ", step " << k;
+            contacts += certified.contacts().size();
+        }
+    }
+    EXPECT_GT(contacts, 1000u);
 }
 
 TEST(Speculative, BadMarginsAreRefused) {

@@ -233,6 +233,10 @@ def collide(
     Raises InputError for poses that are not finite and rigid to 1e-4, where numbers of shapes and poses differ, and as
     Scene does for settings.
     """
+    if type(a) is Shape and type(b) is Shape and devices == "cpu" and threads == max_contacts_per_pair == 0:
+        one = _core.one_collide(a._core, pose_a, b._core, pose_b, direction, features)
+        if one is not None:
+            return PairContacts._from_bytes(one)
     pairs = _Pairs(a, b, pose_a, pose_b, threads)
     settings = as_settings(
         {

@@ -3,20 +3,26 @@
 // wrong, has no answer here (None): the Python half looks closer, and says what is wrong.
 #include "arrays.h"
 #include "bind.h"
+#include "contact_bytes.h"
 #include "single.h"
 #include "without_gil.h"
 
+#include <raycontact/collide.h>
 #include <raycontact/query.h>
 
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/string.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <optional>
 #include <span>
+#include <string>
+#include <vector>
 
 namespace raycontact::python {
 
@@ -59,6 +65,27 @@ std::optional<bool> one_intersects(const Shape& a, nb::handle given_a, const Sha
     if (!pose_a || !pose_b) return std::nullopt;
     const WithoutGil without_gil;
     return intersects(a, *pose_a, b, *pose_b);
+}
+
+// None, too, of words that are not known, and of pairs during which Ctrl-C should count.
+std::optional<ReadOnlyArray> one_collide(const Shape& a, nb::handle given_a, const Shape& b, nb::handle given_b,
+                                         const std::string& direction, const std::string& features) {
+    constexpr std::size_t few = 1 << 15; // triangles
+    const auto pose_a = pose_of(given_a), pose_b = pose_of(given_b);
+    if (!pose_a || !pose_b || a.triangles().size() + b.triangles().size() > few) return std::nullopt;
+    CollideOptions options;
+    try {
+        options.direction = direction_from(direction);
+        options.features = features_from(features);
+    } catch (const InputError&) {
+        return std::nullopt;
+    }
+    auto found = std::make_shared<std::vector<Contact>>();
+    {
+        const WithoutGil without_gil;
+        *found = collide(a, *pose_a, b, *pose_b, options);
+    }
+    return bytes_of(std::move(found));
 }
 
 std::optional<nb::tuple> one_distance(const Shape& a, nb::handle given_a, const Shape& b, nb::handle given_b,
@@ -188,6 +215,7 @@ void bind_single(nb::module_& m) {
         },
         "poses"_a);
     m.def("one_intersects", &one_intersects, "a"_a, pose("pose_a"), "b"_a, pose("pose_b"));
+    m.def("one_collide", &one_collide, "a"_a, pose("pose_a"), "b"_a, pose("pose_b"), "direction"_a, "features"_a);
     m.def("one_distance", &one_distance, "a"_a, pose("pose_a"), "b"_a, pose("pose_b"), "max"_a);
     m.def("one_closest_point", &one_closest_point, "shape"_a, pose("pose"), "point"_a, "max"_a);
     m.def("one_contains", &one_contains, "shape"_a, pose("pose"), "point"_a);

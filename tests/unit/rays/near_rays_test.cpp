@@ -3,6 +3,7 @@
 // are.
 #include "mesh/vector.h"
 #include "part/pipeline.h"
+#include "shape/mesh_rays.h"
 #include "shape/shape_data.h"
 
 #include "device/listed_pairs.h"
@@ -59,31 +60,40 @@ public:
         const auto at = static_cast<std::size_t>(std::ranges::find(found_, pairs[i]) - found_.begin());
         return at >= found_.size() || pipeline_.contacts().first(2 * at) == pipeline_.contacts().first(2 * at + 2);
     }
-    /// By pair: how far its bodies can move, either against the other, before an edge crosses that is not found now.
-    std::vector<double> clear(double ahead, RayBatch& batch, NearRays& rays) {
+    /// By directed pair what comes within `more` of its target; with `ahead`, as NearRays::clear() needs it. Parts of
+    /// the smaller body's size. Returns these, metres.
+    std::vector<float> cast(double more, double ahead, RayBatch& batch, NearRays& rays) {
         const Part::Pairs asked = listed_.next(pairs);
         const Update update{*opened_.device, *opened_.executor, *store_,     bodies,  moved_,
                             asked.open,      asked.asked,       asked.slots, motion_, settings_};
         batch.resize(update.device, 0);
         Array<kernels::DirectedPair> placed;
-        Array<float> beyond;
+        Array<float> margins, beyond;
         placed.resize(update.device, 2 * pairs.size());
+        margins.resize(update.device, 2 * pairs.size());
         beyond.resize(update.device, 2 * pairs.size());
         for (std::uint32_t d = 0; d < 2 * pairs.size(); ++d) {
             const auto [source, target] = directed_bodies(bodies, pairs, d);
             place_source(source, target, placed.in_place()[d]);
+            margins.in_place()[d] = static_cast<float>(more * smaller_size(source, target));
             beyond.in_place()[d] = static_cast<float>(ahead * smaller_size(source, target));
         }
         do {
-            rays.cast(update, placed, {}, {{}, beyond, {}}, batch);
+            rays.cast(update, placed, {}, {margins, beyond, {}}, batch);
             const Piece pieces[] = {batch.totals.piece(batch.sums), rays.found().piece()};
             update.device.queue().read(pieces);
         } while (!rays.had_room(update.device, batch));
+        const std::span<const float> asked_for = ahead > 0 ? beyond.in_place() : margins.in_place();
+        return {asked_for.begin(), asked_for.end()};
+    }
+    /// By pair: how far its bodies can move, either against the other, before an edge crosses that is not found now.
+    std::vector<double> clear(double ahead, RayBatch& batch, NearRays& rays) {
+        const std::vector<float> beyond = cast(0, ahead, batch, rays);
         std::vector<double> clear;
         for (std::uint32_t i = 0; i < pairs.size(); ++i) {
             const auto& [a, b] = pairs[i];
             const auto of = [&](std::uint32_t d, std::uint32_t target) {
-                return rays.clear(d, beyond.in_place()[d], bodies[target].shape->data().header.tolerance);
+                return rays.clear(d, beyond[d], bodies[target].shape->data().header.tolerance);
             };
             clear.push_back(std::min(of(2 * i, b), of(2 * i + 1, a)));
         }
@@ -227,6 +237,51 @@ TEST(NearRays, WhatIsClearStaysApart) {
     }
     EXPECT_GT(moved, 20u);
     EXPECT_GT(touched, 4u) << "a few times as far, some cross";
+}
+
+// Vertices that rest, and the faces within a margin: all that a brute force in double finds, and few others.
+TEST(NearRays, FindEveryFaceNearAVertex) {
+    Random random(13);
+    std::vector<const Subject*> subjects = pointers(closed_subjects());
+    for (const Subject& open : open_subjects()) subjects.push_back(&open);
+    std::vector<std::shared_ptr<const Shape>> shapes;
+    for (const Subject* subject : subjects) {
+        subject->shape->prepare();
+        shapes.push_back(subject->shape);
+    }
+    Pairs all(shapes);
+    for (int i = 0; i < 100; ++i) {
+        const Placement placed = random_placement(subjects, random);
+        const auto at = [&](const Subject* subject) {
+            return std::size_t(std::ranges::find(subjects, subject) - subjects.begin());
+        };
+        all.add(at(placed.a), placed.pose_a, at(placed.b), placed.pose_b);
+    }
+    RayBatch batch;
+    NearRays rays(BlockSearch::Sources::points);
+    const std::vector<float> margins = all.cast(0.02, 0, batch, rays);
+    std::vector<Found> found(margins.size());
+    for (const auto& [vertex, face, pair] : rays.found().values())
+        EXPECT_TRUE(found[pair].emplace(vertex, face).second) << "once";
+    std::size_t expected = 0, near = 0;
+    for (std::uint32_t d = 0; d < found.size(); ++d) {
+        near += found[d].size();
+        const auto [source, target] = directed_bodies(all.bodies, all.pairs, d);
+        const ShapeData &from = source.shape->data(), &to = target.shape->data();
+        const Pose pose = relative_pose(target.centred, source.centred);
+        for (std::uint32_t v = 0; v < from.points.size(); ++v) {
+            if (from.vertex_triangle[v] == Shape::no_triangle) continue;
+            const Vec3 p = transform_point(pose, from.point(v));
+            for (std::uint32_t face = 0; face < to.mesh.triangles.size(); ++face) {
+                const NearestPoint nearest = nearest_of(p, to.corner(face, 0), to.corner(face, 1), to.corner(face, 2));
+                if (length(p - nearest.point) > double(margins[d])) continue;
+                EXPECT_TRUE(found[d].contains({v, face})) << "pair " << d << ": vertex " << v << ", face " << face;
+                ++expected;
+            }
+        }
+    }
+    EXPECT_GT(expected, 3000u);
+    EXPECT_LE(double(near), 2.5 * double(expected));
 }
 
 // Faces in one plane, edges along edges.

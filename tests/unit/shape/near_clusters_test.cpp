@@ -72,7 +72,7 @@ TEST(NearClusters, IsNoSaferThanItsVertices) {
             for (kernels::uint lane = 0; lane < VERTEX_LANES; ++lane)
                 if (lane != block % VERTEX_LANES) alone.centre[0][lane] = NAN; // an empty lane
             kernels::prototype::Search search{0,    &pair, &tree,     &to.header, &alone, to.clearances.data(),
-                                              0.0f, 0.0f,  UNBOUNDED, UNBOUNDED};
+                                              0.0f, {},    UNBOUNDED, UNBOUNDED};
             ++blocks;
             if (kernels::prototype::near_lanes(&search, &alone) != 0) continue;
             ++skipped;
