@@ -23,8 +23,8 @@ bool is_inside(const PairMeshes& pair, std::size_t side, std::uint32_t vertex) {
 } // namespace
 
 const InnerFace* InnerSurfaces::at(std::size_t side, std::uint32_t face) const {
-    const std::uint32_t place = places_[side][face];
-    return place == NONE ? nullptr : &faces_[side][place];
+    const auto found = std::ranges::lower_bound(faces_[side], face, {}, &InnerFace::face);
+    return found != faces_[side].end() && found->face == face ? &*found : nullptr;
 }
 
 void InnerSurfaces::find(const PairMeshes& pair, const Loops& loops, const EdgePieces& pieces) {
@@ -40,8 +40,6 @@ void InnerSurfaces::find(const PairMeshes& pair, const Loops& loops, const EdgeP
             visit(pair, pieces, side, face);
         }
         std::ranges::sort(faces_[side], {}, &InnerFace::face);
-        places_[side].assign(pair.shape(side).mesh.triangles.size(), NONE);
-        for (std::uint32_t i = 0; i < faces_[side].size(); ++i) places_[side][faces_[side][i].face] = i;
     }
     std::erase_if(joints_, [&](const Joint& joint) {
         return at(joint.side, joint.faces[0]) == nullptr || at(joint.side, joint.faces[1]) == nullptr;

@@ -68,7 +68,6 @@ private:
 
     std::array<Side, 2> sides_;
     std::array<std::vector<InnerFace>, 2> faces_;
-    std::array<std::vector<std::uint32_t>, 2> places_; ///< of faces_, by face; else NONE
     std::vector<OutlineSegment> segments_;
     std::vector<Joint> joints_;
     DisjointSets sets_;

@@ -90,22 +90,18 @@ Motion::Bound Motion::bound(std::span<const Body> bodies, const SlotPair& pair) 
     const float still = distance(a.shift, b.shift) + (a.shift_lost + b.shift_lost);
     // The target's turn sweeps the source along, at its distance. Rotations are rigid to 1e-4, hence the thousandth.
     const float apart = distance(a.centre, b.centre) + (a.centre_lost + b.centre_lost);
-    const float turned =
-        std::max(a.turn * a.reach + b.turn * (apart + a.reach), b.turn * b.reach + a.turn * (apart + b.reach));
+    const float a_turned = a.turn * a.reach + b.turn * (apart + a.reach);
+    const float b_turned = b.turn * b.reach + a.turn * (apart + b.reach);
     const float arc = std::max(arc_of(b.turn, apart + still + a.reach, still + a.turn * a.reach),
                                arc_of(a.turn, apart + still + b.reach, still + b.turn * b.reach));
-    return {1.001 * double(still + turned),
+    return {1.001 * double(still + std::max(a_turned, b_turned)), 1.001 * double(still + std::min(a_turned, b_turned)),
             1.001 * double(still + (((a.turn + a.warp) * a.reach + (b.turn + b.warp) * b.reach) + arc))};
 }
 
 double Motion::pair_way(const SlotPair& pair, double margin) const {
     if (next_.empty()) return 0;
-    const Body &a = next_[pair.first], &b = next_[pair.second];
-    const float still = distance(a.shift, b.shift) + (a.shift_lost + b.shift_lost);
-    const float apart = distance(a.centre, b.centre) + (a.centre_lost + b.centre_lost);
-    const float turned =
-        std::min(a.turn * a.reach + b.turn * (apart + a.reach), b.turn * b.reach + a.turn * (apart + b.reach));
-    return 1.001 * double(still + turned) > margin ? bound(next_, pair).nearer : 0;
+    const Bound way = bound(next_, pair);
+    return way.moved_least > margin ? way.nearer : 0;
 }
 
 double Motion::pair_speed(const SlotPair& pair) const {

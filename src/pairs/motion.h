@@ -24,13 +24,14 @@ public:
     void prefetch(const SlotPair& pair) const { platform::prefetch(&bodies_[pair.second]); }
     /// Upper bounds for a pair, metres.
     struct Bound {
-        double moved; ///< how far any vertex of either body moved in the frame of the other
+        double moved;       ///< how far any vertex of either body moved in the frame of the other
+        double moved_least; ///< the same in that of the two frames in which vertices moved less
         double
             nearer; ///< by how much any point of the one came nearer to the other, on a straight way in its frame, too
     };
     Bound pair_bound(const SlotPair& pair) const { return bound(bodies_, pair); }
-    /// Bound::nearer of the way that is before the bodies (PlacedBody::next), if points of either body may go farther
-    /// than `margin` as seen from the other; else 0, as until expect().
+    /// Bound::nearer of the way that is before the bodies (PlacedBody::next), if Bound::moved_least of it is more than
+    /// `margin`, metres; else 0, as until expect().
     double pair_way(const SlotPair& pair, double margin) const;
     /// About how fast the two bodies' surfaces move past each other, metres a step.
     double pair_speed(const SlotPair& pair) const;

@@ -39,6 +39,15 @@ inline bool seeks_what_hides(const PlacedBody& a, const PlacedBody& b, double ma
     return a.shape->data().hides_half < least_hidden_ahead(a, b, margin) && margin < smaller_size(a, b);
 }
 
+/// Calls visit(edge or vertex, its near faces) for each, of a list in which those of each are together.
+template <class Visit>
+void by_source(std::span<const NearEdge> near, Visit&& visit) {
+    for (std::size_t begin = 0, end = 0; begin < near.size(); begin = end) {
+        while (end < near.size() && near[end].edge == near[begin].edge) ++end;
+        visit(near[begin].edge, near.subspan(begin, end - begin));
+    }
+}
+
 /// Of a pair: the edges of a near b, and those of b near a; each sorted by edge and face.
 using NearEdges = std::array<std::span<const NearEdge>, 2>;
 

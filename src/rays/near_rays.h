@@ -15,8 +15,8 @@ public:
     BlockSearch::Sources sources() const { return sources_; }
     /// By directed pair, metres; each may be empty.
     struct Reach {
-        const Array<float>&more, &ahead; ///< beyond what is needed; beyond that, for clear() alone
-        const Array<kernels::EdgeChoice>& choices;
+        const Array<float>&more, &ahead;           ///< beyond what is needed; beyond that, for clear() alone
+        const Array<kernels::EdgeChoice>& choices; ///< of edges; empty: all alike
     };
     /// pairs: both directions of each pair side by side. next: the same at the next step, for edges that come near on
     /// their way there; may be empty.

@@ -140,25 +140,19 @@ public:
           from_both_(seeks_what_hides(pair.a, pair.b, pair.margin)), found_(found), touching_(found.size()) {}
 
     void find(const NearEdges& near) {
-        by_edge(near[0], [&](std::uint32_t number, std::span<const NearEdge> faces) {
-            if (counts(body_.source, number)) find(edge_of_a(body_, number), faces);
+        by_source(near[0], [&](std::uint32_t number, std::span<const NearEdge> faces) {
+            const bool is_near = !from_both_ || hidden_by(body_.source, number) > ahead_;
+            if ((is_near || body_.moves) && counts(body_.source, number))
+                find(edge_of_a(body_, number), is_near, faces);
         });
         if (!from_both_) return;
-        by_edge(near[1], [&](std::uint32_t number, std::span<const NearEdge> faces) {
+        by_source(near[1], [&](std::uint32_t number, std::span<const NearEdge> faces) {
             if (hidden_by(body_.target, number) > ahead_ && counts(body_.target, number))
                 find_small(edge_of(body_.target, number), faces);
         });
     }
 
 private:
-    // Calls visit(edge, its near faces) for each.
-    template <class Visit>
-    static void by_edge(std::span<const NearEdge> near, Visit&& visit) {
-        for (std::size_t begin = 0, end = 0; begin < near.size(); begin = end) {
-            while (end < near.size() && near[end].edge == near[begin].edge) ++end;
-            visit(near[begin].edge, near.subspan(begin, end - begin));
-        }
-    }
     // An edge is asked with the lowest of its faces.
     bool counts(const ShapeData& shape, std::uint32_t edge) const {
         return is_sharp(shape, edge) && hidden_by(shape, edge) > least_ && is_convex(shape, edge);
@@ -168,12 +162,11 @@ private:
         return hidden_by(body_.source, edge) * hidden_by(body_.target, other) > ahead_ * ahead_;
     }
 
-    void find(const Edge& edge, std::span<const NearEdge> faces) {
+    // is_near: edges of b may be near, too; else it may meet some.
+    void find(const Edge& edge, bool is_near, std::span<const NearEdge> faces) {
         Box box = box_of(edge.ends[0], edge.ends[1], pair_.margin);
         const Box then = box_of(edge.ends[0] + edge.ways[0], edge.ends[1] + edge.ways[1], pair_.margin);
         box = {least(box.low, then.low), most(box.high, then.high)};
-        const bool is_near = !from_both_ || hidden_by(body_.source, edge.number) > ahead_;
-        if (!is_near && !body_.moves) return;
         for (const NearEdge& one : faces)
             for (std::uint32_t k = 0; k < 3; ++k) {
                 const std::uint32_t number = 3 * one.face + k;

@@ -12,15 +12,6 @@ namespace {
 // Planes whose normals' product is larger are one.
 constexpr double same_plane = 0.995;
 
-// Calls visit(vertex, its near faces) for each.
-template <class Visit>
-void by_vertex(std::span<const NearEdge> near, Visit&& visit) {
-    for (std::size_t begin = 0, end = 0; begin < near.size(); begin = end) {
-        while (end < near.size() && near[end].edge == near[begin].edge) ++end;
-        visit(near[begin].edge, near.subspan(begin, end - begin));
-    }
-}
-
 // Out of the target.
 Vec3 normal_of(const kernels::LocalContact& c) {
     return {c.normal.x, c.normal.y, c.normal.z};
@@ -46,7 +37,7 @@ void VertexSearch::find(const SpeculativePair& pair, const NearEdges& near,
         const ShapeData& source = pair.bodies[own].source;
         const std::size_t first = found.size();
         followers_.clear();
-        by_vertex(near[own], [&](std::uint32_t v, std::span<const NearEdge> faces) {
+        by_source(near[own], [&](std::uint32_t v, std::span<const NearEdge> faces) {
             const auto at = std::ranges::lower_bound(touching[own], v, {}, &kernels::LocalContact::vertex);
             const bool touches = at != touching[own].end() && at->vertex == v;
             if (touches && is_spoken_for(pair.bodies[own], *at)) return;

@@ -67,7 +67,7 @@ std::optional<bool> one_intersects(const Shape& a, nb::handle given_a, const Sha
     return intersects(a, *pose_a, b, *pose_b);
 }
 
-// None, too, of words that are not known, and of pairs during which Ctrl-C should count.
+// None, too, of words that are not known, and of pairs that are worth more threads than one.
 std::optional<ReadOnlyArray> one_collide(const Shape& a, nb::handle given_a, const Shape& b, nb::handle given_b,
                                          const std::string& direction, const std::string& features) {
     constexpr std::size_t few = 1 << 15; // triangles

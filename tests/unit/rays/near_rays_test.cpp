@@ -168,25 +168,35 @@ void expect_all_found(Pairs& all, std::size_t least, double most_others) {
     EXPECT_LE(double(near), (1 + most_others) * double(expected));
 }
 
-TEST(NearRays, FindEveryCrossing) {
-    Random random(11);
+std::vector<const Subject*> closed_and_open() {
     std::vector<const Subject*> subjects = pointers(closed_subjects());
     for (const Subject& open : open_subjects()) subjects.push_back(&open);
+    return subjects;
+}
+
+std::vector<std::shared_ptr<const Shape>> shapes_of(const std::vector<const Subject*>& subjects) {
     std::vector<std::shared_ptr<const Shape>> shapes;
     for (const Subject* subject : subjects) {
         subject->shape->prepare();
         shapes.push_back(subject->shape);
     }
-    Pairs all(shapes);
+    return shapes;
+}
+
+std::size_t place_of(const Subject* subject, const std::vector<const Subject*>& subjects) {
+    return std::size_t(std::ranges::find(subjects, subject) - subjects.begin());
+}
+
+TEST(NearRays, FindEveryCrossing) {
+    Random random(11);
+    const std::vector<const Subject*> subjects = closed_and_open();
+    Pairs all(shapes_of(subjects));
     for (int i = 0; i < 140; ++i) {
         const Placement placed = random_placement(subjects, random);
-        const auto at = [&](const Subject* subject) {
-            return std::size_t(std::ranges::find(subjects, subject) - subjects.begin());
-        };
         Pose far = placed.pose_b, far_a = placed.pose_a;
         if (i % 4 == 0)
             for (Pose* pose : {&far, &far_a}) pose->translation = pose->translation + Vec3{10000, 3000, -2000};
-        all.add(at(placed.a), far_a, at(placed.b), far);
+        all.add(place_of(placed.a, subjects), far_a, place_of(placed.b, subjects), far);
     }
     expect_all_found(all, 3000, 0.1);
 }
@@ -195,21 +205,13 @@ TEST(NearRays, FindEveryCrossing) {
 TEST(NearRays, WhatIsClearStaysApart) {
     Random random(12);
     const std::vector<const Subject*> subjects = pointers(closed_subjects());
-    std::vector<std::shared_ptr<const Shape>> shapes;
-    for (const Subject* subject : subjects) {
-        subject->shape->prepare();
-        shapes.push_back(subject->shape);
-    }
-    Pairs all(shapes);
+    Pairs all(shapes_of(subjects));
     for (int i = 0; i < 120; ++i) {
         const Placement placed = random_placement(subjects, random);
-        const auto at = [&](const Subject* subject) {
-            return std::size_t(std::ranges::find(subjects, subject) - subjects.begin());
-        };
         Pose away = placed.pose_b;
         const double size = std::min(placed.a->shape->data().diagonal, placed.b->shape->data().diagonal);
         away.translation = away.translation + (0.7 * size) * random.direction();
-        all.add(at(placed.a), placed.pose_a, at(placed.b), away);
+        all.add(place_of(placed.a, subjects), placed.pose_a, place_of(placed.b, subjects), away);
     }
     RayBatch batch;
     NearRays rays(BlockSearch::Sources::edges);
@@ -242,20 +244,11 @@ TEST(NearRays, WhatIsClearStaysApart) {
 // Vertices that rest, and the faces within a margin: all that a brute force in double finds, and few others.
 TEST(NearRays, FindEveryFaceNearAVertex) {
     Random random(13);
-    std::vector<const Subject*> subjects = pointers(closed_subjects());
-    for (const Subject& open : open_subjects()) subjects.push_back(&open);
-    std::vector<std::shared_ptr<const Shape>> shapes;
-    for (const Subject* subject : subjects) {
-        subject->shape->prepare();
-        shapes.push_back(subject->shape);
-    }
-    Pairs all(shapes);
+    const std::vector<const Subject*> subjects = closed_and_open();
+    Pairs all(shapes_of(subjects));
     for (int i = 0; i < 100; ++i) {
         const Placement placed = random_placement(subjects, random);
-        const auto at = [&](const Subject* subject) {
-            return std::size_t(std::ranges::find(subjects, subject) - subjects.begin());
-        };
-        all.add(at(placed.a), placed.pose_a, at(placed.b), placed.pose_b);
+        all.add(place_of(placed.a, subjects), placed.pose_a, place_of(placed.b, subjects), placed.pose_b);
     }
     RayBatch batch;
     NearRays rays(BlockSearch::Sources::points);
