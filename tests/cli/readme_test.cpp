@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each shell line of README and docs/program.md as it stands, one after another in a folder of its own; and each link.
+// Each shell line of README and docs/program.md as it stands, one after another in a folder of its own.
 #include "program.h"
 
 #include <gtest/gtest.h>
@@ -9,9 +9,6 @@
 #include <fstream>
 #include <iostream>
 #include <iterator>
-#include <regex>
-#include <set>
-#include <sstream>
 
 namespace {
 
@@ -66,56 +63,6 @@ TEST(Readme, EachShellLineRuns) {
         ++ran;
     }
     EXPECT_GE(ran, 16u);
-}
-
-std::string text_of(const std::filesystem::path& file) {
-    std::ostringstream text;
-    text << std::ifstream(file).rdbuf();
-    return text.str();
-}
-
-/// The names by which links reach the headings of a page.
-std::set<std::string> anchors_of(const std::filesystem::path& page) {
-    std::set<std::string> anchors;
-    std::istringstream lines(text_of(page));
-    for (std::string line; std::getline(lines, line);) {
-        if (!line.starts_with('#')) continue;
-        std::string anchor;
-        for (const char c : line.substr(line.find_first_not_of("# "))) {
-            if (std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_')
-                anchor += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-            else if (c == ' ')
-                anchor += '-';
-        }
-        anchors.insert(anchor);
-    }
-    return anchors;
-}
-
-TEST(Docs, EachLinkLeadsToAPageAndAHeading) {
-    const std::filesystem::path source = RAYCONTACT_SOURCE_FOLDER;
-    std::vector<std::filesystem::path> pages;
-    for (const char* page :
-         {"README.md", "CONTRIBUTING.md", "CHANGELOG.md", "SECURITY.md", "bench/README.md", "bench/log.md"})
-        pages.push_back(source / page);
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(source / "docs"))
-        if (entry.path().extension() == ".md") pages.push_back(entry.path());
-    const std::regex link(R"(\]\(([^)\s#]*)(?:#([^)\s]*))?\))");
-    std::size_t links = 0;
-    for (const auto& page : pages) {
-        const std::string text = text_of(page);
-        for (std::sregex_iterator it(text.begin(), text.end(), link), end; it != end; ++it) {
-            const std::string to = (*it)[1], anchor = (*it)[2];
-            if (to.starts_with("http")) continue;
-            const std::filesystem::path target = to.empty() ? page : page.parent_path() / to;
-            ++links;
-            ASSERT_TRUE(std::filesystem::exists(target)) << page << ": " << it->str();
-            if (!anchor.empty()) {
-                EXPECT_TRUE(anchors_of(target).contains(anchor)) << page << ": " << it->str();
-            }
-        }
-    }
-    EXPECT_GT(links, 100u);
 }
 
 } // namespace
