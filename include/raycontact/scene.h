@@ -35,6 +35,10 @@ struct BodyRayHit : RayHit {
 struct BodyClosestPoint : ClosestPoint {
     BodyId body{}; ///< on whose surface it lies
 };
+/// When a moving mesh, which is the first of the two, meets a body, and where.
+struct BodyImpact : Impact {
+    BodyId body{}; ///< that is met
+};
 
 /// Bodies with shapes and poses. It finds every contact between them where they are; it moves nothing. A step is one
 /// call of find_contacts(). Not thread-safe; use one scene per thread. All functions that take the id of a body throw
@@ -163,6 +167,14 @@ public:
     std::vector<BodyId> overlaps(const Shape& shape, const Pose& pose, const Wanted& wanted = {}) const;
     /// Whether overlaps() has any; ends at the first one found. Throws InputError as it does.
     bool overlaps_any(const Shape& shape, const Pose& pose, const Wanted& wanted = {}) const;
+    /// The body that a moving mesh meets first, or comes nearer to than `distance` metres: a shape cast. Bodies stay
+    /// where they are; of several met at one time the one with the lowest slot. screw_motion() and straight_motion()
+    /// make motions of two poses. As raycontact::time_of_impact() with its own tolerance; throws InputError as that.
+    std::optional<BodyImpact> sweep(const Shape& shape, const RigidMotion& motion, double distance = 0,
+                                    const Wanted& wanted = {}) const;
+    /// All bodies that sweep() could meet, each for itself: by time, then by slot.
+    std::vector<BodyImpact> sweep_all(const Shape& shape, const RigidMotion& motion, double distance = 0,
+                                      const Wanted& wanted = {}) const;
     /// Of two bodies. Throws InputError as raycontact::distance().
     std::optional<Distance> distance(BodyId a, BodyId b, double max = any_distance) const;
 

@@ -5,6 +5,7 @@
 #include "executor/float_environment.h"
 #include "query/checks.h"
 #include "query/shape_pair.h"
+#include "query/sweep.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,36 +17,18 @@ namespace {
 
 constexpr double infinite = std::numeric_limits<double>::infinity();
 
-// About the file's vertices of a placed shape, which lie a rounding outside of its own box.
-Box box_around(const Shape& shape, const Pose& pose) {
-    return world_box({shape.box_min(), shape.box_max()}, pose, rounding_of(shape.data()));
-}
-
-// How far along a ray a box begins, metres, not more than that; infinite: it is missed. direction: unit.
-double entry_of(const Box& box, const Vec3& origin, const Vec3& direction) {
-    double enter = 0, leave = infinite;
-    for (std::size_t k = 0; k < 3; ++k) {
-        const double o = axis(origin, k), d = axis(direction, k), inverse = 1 / (std::fabs(d) > 1e-20 ? d : 1e-20);
-        const double slack = 1e-14 * std::fabs(o);
-        const double t0 = (axis(box.low, k) - slack - o) * inverse, t1 = (axis(box.high, k) + slack - o) * inverse;
-        enter = std::max(enter, std::min(t0, t1));
-        leave = std::min(leave, std::max(t0, t1));
-    }
-    return enter <= leave * (1 + 1e-14) ? enter * (1 - 1e-14) : infinite;
-}
-
-/// The nearest of what is found on bodies; of equally near ones that with the lowest slot.
-template <class Found>
+/// The nearest of what is found on bodies, or the first; of equal ones that with the lowest slot.
+template <class Found, auto away>
 class Nearest {
 public:
     explicit Nearest(double max) : max_(max) {}
 
-    double farthest() const { return found_ ? found_->distance : max_; }
+    double farthest() const { return found_ ? (*found_).*away : max_; }
     template <class Other>
     void add(BodyId body, const std::optional<Other>& other) {
         if (!other) return;
-        const bool nearer = !found_ || other->distance < found_->distance;
-        if (!nearer && (other->distance > found_->distance || !(body < found_->body))) return;
+        const bool nearer = !found_ || (*other).*away < farthest();
+        if (!nearer && ((*other).*away > farthest() || !(body < found_->body))) return;
         found_.emplace();
         static_cast<Other&>(*found_) = *other;
         found_->body = body;
@@ -53,7 +36,7 @@ public:
     const std::optional<Found>& found() const { return found_; }
 
 private:
-    double max_; ///< metres
+    double max_; ///< metres, or a time
     std::optional<Found> found_;
 };
 
@@ -79,7 +62,7 @@ std::optional<BodyRayHit> Scene::raycast(const Vec3& origin, const Vec3& directi
                                          const Wanted& wanted) const {
     const FloatEnvironment environment;
     const CheckedRay ray(origin, direction, max);
-    Nearest<BodyRayHit> nearest(max);
+    Nearest<BodyRayHit, &RayHit::distance> nearest(max);
     const auto ask = [&](BodyId body) {
         if (wanted && !wanted(body)) return;
         const Box box = box_around(shape(body), pose(body)); // may be tighter than the tree's
@@ -108,7 +91,7 @@ std::optional<BodyClosestPoint> Scene::closest_point(const Vec3& point, double m
     const FloatEnvironment environment;
     check_place(point, "closest_point: the point");
     check_reach(max, "closest_point");
-    Nearest<BodyClosestPoint> nearest(max);
+    Nearest<BodyClosestPoint, &ClosestPoint::distance> nearest(max);
     const auto ask = [&](BodyId body) {
         if (wanted && !wanted(body)) return;
         const Box box = box_around(shape(body), pose(body)); // may be tighter than the tree's
@@ -151,6 +134,43 @@ std::vector<BodyId> Scene::overlaps(const Shape& other, const Pose& place, const
         return true;
     });
     std::ranges::sort(found, {}, &BodyId::slot);
+    return found;
+}
+
+std::optional<BodyImpact> Scene::sweep(const Shape& other, const RigidMotion& motion, double distance,
+                                       const Wanted& wanted) const {
+    const FloatEnvironment environment;
+    const Sweep sweep(other, motion, distance);
+    Nearest<BodyImpact, &Impact::time> nearest(1);
+    visit_near(
+        [&](const Vec3& low, const Vec3& high) {
+            return sweep.earliest({low, high});
+        },
+        [&] { return nearest.farthest(); },
+        [&](BodyId body) {
+            if (wanted && !wanted(body)) return;
+            nearest.add(body, sweep.impact(shape(body), pose(body), nearest.farthest()));
+        });
+    return nearest.found();
+}
+
+std::vector<BodyImpact> Scene::sweep_all(const Shape& other, const RigidMotion& motion, double distance,
+                                         const Wanted& wanted) const {
+    const FloatEnvironment environment;
+    const Sweep sweep(other, motion, distance);
+    std::vector<BodyImpact> found;
+    visit_near(
+        [&](const Vec3& low, const Vec3& high) {
+            return sweep.earliest({low, high});
+        },
+        [] { return 1.0; },
+        [&](BodyId body) {
+            if (wanted && !wanted(body)) return;
+            if (const auto impact = sweep.impact(shape(body), pose(body), 1)) found.push_back({*impact, body});
+        });
+    std::ranges::sort(found, [](const BodyImpact& a, const BodyImpact& b) {
+        return a.time < b.time || (a.time == b.time && a.body < b.body);
+    });
     return found;
 }
 

@@ -2,6 +2,7 @@
 #include "query/surfaces.h"
 
 #include "mesh/triangle_pair.h"
+#include "query/triangle_distance.h"
 #include "shape/mesh_rays.h"
 
 #include <algorithm>
@@ -13,65 +14,9 @@ namespace raycontact {
 
 namespace {
 
-constexpr double infinite = std::numeric_limits<double>::infinity();
-using Corners = std::array<Vec3, 3>;
-
 Box grown(const Box& box, double by) {
     const Vec3 grow{by, by, by};
     return {box.low - grow, box.high + grow};
-}
-
-/// Two points and their squared distance, m^2.
-struct Span {
-    double squared = infinite;
-    Vec3 a, b;
-
-    void shorten(const Vec3& to_a, const Vec3& to_b) {
-        const Vec3 off = to_a - to_b;
-        if (dot(off, off) < squared) *this = {dot(off, off), to_a, to_b};
-    }
-};
-
-// The closest points of two segments (after Ericson 2005, section 5.1.9). Of nearly parallel ones, where rounding may
-// put the place anywhere along both, the distance is within 1e-8 of their length.
-void shorten_between_edges(Span& span, const Vec3& p, const Vec3& u, const Vec3& q, const Vec3& v) {
-    const auto ratio = [](double above, double below) { return below > 0 ? std::clamp(above / below, 0.0, 1.0) : 0; };
-    const Vec3 w = p - q;
-    const double uu = dot(u, u), vv = dot(v, v), uv = dot(u, v), uw = dot(u, w), vw = dot(v, w);
-    const double s = ratio(uv * vw - vv * uw, uu * vv - uv * uv);
-    const double t = ratio(uv * s + vw, vv);
-    span.shorten(p + ratio(uv * t - uw, uu) * u, q + t * v);
-}
-
-/// A triangle with what its distance from others needs.
-struct Face {
-    Corners corner, edge;
-    Vec3 normal; ///< twice the area long; zero of a needle, whose normal is not accurate and whose edges are enough
-
-    explicit Face(const Corners& t) : corner(t), edge{t[1] - t[0], t[2] - t[1], t[0] - t[2]} {
-        const Vec3 n = cross(edge[0], edge[1]);
-        if (dot(n, n) > 1e-12 * dot(edge[0], edge[0]) * dot(edge[1], edge[1])) normal = n;
-    }
-
-    /// The point within the face that is closest to p, unless an edge is closer or it is no nearer than `least`, m^2.
-    std::optional<Vec3> within(const Vec3& p, double least) const {
-        const Vec3 off = p - corner[0];
-        const double height = dot(normal, off), size2 = dot(normal, normal);
-        if (!(height * height < least * size2)) return std::nullopt;
-        for (std::size_t k = 0; k < 3; ++k)
-            if (dot(normal, cross(edge[k], p - corner[k])) < 0) return std::nullopt;
-        return p - (height / size2) * normal;
-    }
-};
-
-// Of triangles that do not meet: between two edges, or from a corner of one to the face of the other.
-void shorten_between(Span& span, const Face& p, const Face& q) {
-    for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t k = 0; k < 3; ++k) shorten_between_edges(span, p.corner[i], p.edge[i], q.corner[k], q.edge[k]);
-    for (const Vec3& corner : p.corner)
-        if (const auto point = q.within(corner, span.squared)) span.shorten(corner, *point);
-    for (const Vec3& corner : q.corner)
-        if (const auto point = p.within(corner, span.squared)) span.shorten(*point, corner);
 }
 
 /// The box of a child by its middle.

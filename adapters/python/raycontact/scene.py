@@ -21,12 +21,14 @@ from ._arrays import (
     as_length,
     as_pairs,
     as_points,
+    as_pose,
     as_poses,
 )  # fmt: skip
 from ._core import InputError, StepStats
 from ._memory import as_column
 from ._settings import as_settings
 from .contacts import Contacts
+from .impacts import BodyImpact
 from .queries import Distance, OneDistance
 from .shape import Shape, ShapeLike, Shapes, as_shapes
 
@@ -522,6 +524,56 @@ class Scene:
             return np.zeros(lead, np.bool_) if lead else False
         found = self._core.overlaps_any(cores, matrices, links, _wanted(wanted)).view(np.bool_)
         return bool(found[0]) if lead == () else found.reshape(lead)
+
+    def sweep(
+        self,
+        shapes: Shapes,
+        begin: PoseLike,
+        end: PoseLike,
+        *,
+        distance: float = 0.0,
+        wanted: Optional[ArrayLike] = None,
+    ) -> BodyImpact:
+        """The body that a moving mesh meets first, or comes nearer to than `distance` metres: a shape cast.
+
+        shapes: one, or a list. begin, end: poses as of `collide`, (4, 4) or (..., 4, 4): the mesh goes from one to the
+            other by a screw, as `time_of_impact` has it; the bodies stay where they are. All fit as NumPy broadcasts.
+        wanted: (n,), ids of the bodies that count; None: all.
+        Raises InputError as `time_of_impact`, and for an id that is not in the scene.
+        """
+        cores, lead = as_shapes(shapes, "shapes")
+        first, last = as_poses(begin, "begin", rigid=True), as_poses(end, "end", rigid=True)
+        batch = Batch(shapes=lead, begin=first.shape[:-2], end=last.shape[:-2])
+        found, body = self._core.sweep(
+            [cores[i] for i in batch.flat(np.arange(len(cores)).reshape(lead), lead)],
+            batch.flat(first, first.shape[:-2]),
+            batch.flat(last, last.shape[:-2]),
+            as_length(distance, "distance"),
+            _wanted(wanted),
+        )
+        return BodyImpact(*batch.answers((*found, body)))
+
+    def sweep_all(
+        self,
+        shape: ShapeLike,
+        begin: PoseLike,
+        end: PoseLike,
+        *,
+        distance: float = 0.0,
+        wanted: Optional[ArrayLike] = None,
+    ) -> BodyImpact:
+        """All bodies that a moving mesh could meet, each for itself, by time: arrays (n,) and (n, 3).
+
+        Of one shape and (4, 4) poses; else arguments and errors are those of `sweep`.
+        """
+        found, body = self._core.sweep_all(
+            as_shapes(shape, "shape")[0][0],
+            as_pose(begin, "begin", rigid=True)[np.newaxis],
+            as_pose(end, "end", rigid=True)[np.newaxis],
+            as_length(distance, "distance"),
+            _wanted(wanted),
+        )
+        return BodyImpact(*found, body)
 
     @overload
     def distance(self, a: _Id, b: _Id, *, max: float = np.inf) -> OneDistance: ...

@@ -110,6 +110,34 @@ ReadOnlyArray collide(const PlacedPairs& pairs, const nb::dict& words) {
     return bytes_of(std::move(found));
 }
 
+/// Paths of as many poses each, one after the other; what is there once counts for all.
+class Paths {
+public:
+    Paths(const Matrices& matrices, std::size_t steps) : poses_(poses_of(matrices)), steps_(steps) {}
+    std::size_t count() const { return poses_.size() / steps_; }
+    std::span<const Pose> operator[](std::size_t i) const {
+        return std::span(poses_).subspan(count() == 1 ? 0 : i * steps_, steps_);
+    }
+
+private:
+    std::vector<Pose> poses_;
+    std::size_t steps_;
+};
+
+nb::tuple times_of_impact(const Shapes& a, const Matrices& poses_a, std::size_t steps_a, const Shapes& b,
+                          const Matrices& poses_b, std::size_t steps_b, double distance, double tolerance,
+                          std::uint32_t threads) {
+    const Paths paths_a(poses_a, steps_a), paths_b(poses_b, steps_b);
+    const std::size_t n =
+        items_of({{"a", a.size()}, {"path_a", paths_a.count()}, {"b", b.size()}, {"path_b", paths_b.count()}});
+    ImpactColumns first(n);
+    for_each_item(n, threads, "pair", [&](std::size_t i) {
+        const auto found = time_of_impact(*of_item(a, i), paths_a[i], *of_item(b, i), paths_b[i], distance, tolerance);
+        if (found) first.set(i, *found);
+    });
+    return first.take();
+}
+
 nb::tuple closest_points(const Shape& shape, const Matrices& matrices, const Points& given, double max,
                          std::uint32_t threads) {
     const std::vector<Pose> poses = poses_of(matrices);
@@ -234,6 +262,8 @@ void bind_queries(nb::module_& m) {
     m.def("common_points", &common_points, "pairs"_a);
     m.def("distances", &distances, "pairs"_a, "max"_a);
     m.def("contact_patches", &all_contact_patches, "pairs"_a);
+    m.def("times_of_impact", &times_of_impact, "a"_a, "poses_a"_a, "steps_a"_a, "b"_a, "poses_b"_a, "steps_b"_a,
+          "distance"_a, "tolerance"_a, "threads"_a);
     m.def("closest_points", &closest_points, "shape"_a, "poses"_a, "points"_a, "max"_a, "threads"_a);
     m.def("signed_distances", &signed_distances, "shape"_a, "poses"_a, "points"_a, "threads"_a);
     m.def("ray_hits", &ray_hits, "shape"_a, "poses"_a, "origins"_a, "directions"_a, "max"_a, "threads"_a);

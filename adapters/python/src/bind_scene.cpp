@@ -168,6 +168,43 @@ Array any_overlaps(GuardedScene& guarded, const Shapes& shapes, const Matrices& 
     return found.take();
 }
 
+/// A moving mesh of each item; what is there once counts for all.
+nb::tuple sweep(GuardedScene& guarded, const Shapes& shapes, const Matrices& from, const Matrices& to, double distance,
+                const std::optional<Ids>& ids) {
+    const auto scene = guarded.enter();
+    const Chosen chosen(*scene, ids);
+    const auto first = poses_of(from), last = poses_of(to);
+    const std::size_t n = items_of({{"shapes", shapes.size()}, {"begin", first.size()}, {"end", last.size()}});
+    ImpactColumns impacts(n);
+    IndexColumn bodies(n);
+    for_each_item(n, scene->settings().execution.threads, "mesh", [&](std::size_t i) {
+        const auto met = scene->sweep(*of_item(shapes, i), screw_motion(of_item(first, i), of_item(last, i)), distance,
+                                      chosen.wanted());
+        if (!met) return;
+        impacts.set(i, *met);
+        bodies.set(i, number_of(met->body));
+    });
+    return nb::make_tuple(impacts.take(), bodies.take());
+}
+
+nb::tuple sweep_all(GuardedScene& guarded, const Shape& shape, const Matrices& from, const Matrices& to,
+                    double distance, const std::optional<Ids>& ids) {
+    const auto scene = guarded.enter();
+    const Chosen chosen(*scene, ids);
+    std::vector<BodyImpact> met;
+    {
+        const WithoutGil without_gil;
+        met = scene->sweep_all(shape, screw_motion(poses_of(from)[0], poses_of(to)[0]), distance, chosen.wanted());
+    }
+    ImpactColumns impacts(met.size());
+    IndexColumn bodies(met.size());
+    for (std::size_t i = 0; i < met.size(); ++i) {
+        impacts.set(i, met[i]);
+        bodies.set(i, number_of(met[i].body));
+    }
+    return nb::make_tuple(impacts.take(), bodies.take());
+}
+
 // As most callers ask, without NumPy's help (bind_single.cpp); no answer: the Python half looks closer.
 
 std::optional<Array> one_overlaps(GuardedScene& guarded, const Shape& shape, nb::handle given) {
@@ -407,6 +444,8 @@ void bind_scene(nb::module_& m) {
                 return nb::make_tuple(nearest.take(), bodies.take());
             },
             "points"_a, "max"_a, "wanted"_a.none())
+        .def("sweep", &sweep, "shapes"_a, "begin"_a, "end"_a, "distance"_a, "wanted"_a.none())
+        .def("sweep_all", &sweep_all, "shape"_a, "begin"_a, "end"_a, "distance"_a, "wanted"_a.none())
         .def("overlaps", &all_overlaps, "shapes"_a, "poses"_a, "wanted"_a.none())
         .def("overlaps_any", &any_overlaps, "shapes"_a, "poses"_a, "links"_a, "wanted"_a.none())
         .def("one_overlaps", &one_overlaps, "shape"_a, "pose"_a.none())

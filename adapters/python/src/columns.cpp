@@ -41,6 +41,20 @@ nb::tuple DistanceColumns::take() {
     return nb::make_tuple(distance.take(), point_a.take(), point_b.take(), triangle_a.take(), triangle_b.take());
 }
 
+void ImpactColumns::set(std::size_t i, const Impact& found) {
+    time.set(i, found.time);
+    distance.set(i, found.distance);
+    point_a.set(i, found.point_a);
+    point_b.set(i, found.point_b);
+    normal.set(i, found.normal);
+    triangle_a.set_triangle(i, found.triangle_a);
+    triangle_b.set_triangle(i, found.triangle_b);
+}
+nb::tuple ImpactColumns::take() {
+    return nb::make_tuple(time.take(), distance.take(), point_a.take(), point_b.take(), normal.take(),
+                          triangle_a.take(), triangle_b.take());
+}
+
 void ClosestPointColumns::set(std::size_t i, const ClosestPoint& found) {
     distance.set(i, found.distance);
     point.set(i, found.point);

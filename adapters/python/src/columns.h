@@ -92,6 +92,18 @@ struct DistanceColumns {
     nb::tuple take();
 };
 
+/// When two meshes meet: time, distance, both points, normal, both triangles.
+struct ImpactColumns {
+    LengthColumn time, distance;
+    VectorColumn point_a, point_b, normal;
+    IndexColumn triangle_a, triangle_b;
+    explicit ImpactColumns(std::size_t count)
+        : time(count), distance(count), point_a(count), point_b(count), normal(count), triangle_a(count),
+          triangle_b(count) {}
+    void set(std::size_t i, const Impact& found);
+    nb::tuple take();
+};
+
 /// What is nearest to points: distance, point, triangle.
 struct ClosestPointColumns {
     LengthColumn distance;
