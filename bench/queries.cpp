@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // intersects() and distance() beside FCL's collide() (no contacts, one is enough) and distance() on the same poses, one
 // thread, by turns: processor time a query, medians over the rounds, and ratios. Each answers the same questions, and
-// how often the answers differ is printed.
+// how often the answers differ is printed. Then time_of_impact(), as a multiple of one distance(), beside FCL's
+// continuousCollide().
 #include "bench/commands.h"
 #include "bench/options.h"
 
@@ -142,6 +143,49 @@ void compare_meshes(const char* kind, std::uint32_t triangles, std::size_t pair_
     }
 }
 
+/// The second mesh flies to where the other answers begin, and turns on the way. The yardstick is one distance() of
+/// the first poses. Answers are times; 2 where nothing is met.
+void compare_motions(const char* kind, std::uint32_t triangles, std::size_t pair_count, std::size_t rounds) {
+    const auto a = Shape::make(scenes::scene_model(kind, triangles).mesh);
+    const auto b = Shape::make(scenes::scene_model("knot", triangles).mesh);
+#ifdef RAYCONTACT_HAS_FCL
+    const auto fcl_a = model_of<fcl::RSSd>(*a), fcl_b = model_of<fcl::RSSd>(*b);
+#endif
+    const auto begin = poses(pair_count, 1.2, 3), end = poses(pair_count, 0, 1);
+    struct Motion {
+        const char* name;
+        bool turns;
+    };
+    for (const Motion& motion : {Motion{"straight", false}, Motion{"turning", true}}) {
+        const auto goal = [&](const PosedPair& from) {
+            const PosedPair& to = end[static_cast<std::size_t>(&from - begin.data())];
+            Pose pose = motion.turns ? to.b : from.b;
+            pose.translation = {to.b.translation.x - 0.3 * from.b.translation.x,
+                                to.b.translation.y - 0.3 * from.b.translation.y,
+                                to.b.translation.z - 0.3 * from.b.translation.z};
+            return pose;
+        };
+        std::vector<Query> queries{
+            {"distance", [&](const PosedPair& p) { return distance(*a, p.a, *b, p.b)->distance; }}};
+        const std::string what = std::string(kind) + " " + std::to_string(triangles) + " " + motion.name;
+        queries.push_back({"time_of_impact", [&](const PosedPair& p) {
+                               const auto met = time_of_impact(*a, p.a, p.a, *b, p.b, goal(p));
+                               return met ? met->time : 2;
+                           }});
+#ifdef RAYCONTACT_HAS_FCL
+        queries.push_back({"fcl::continuousCollide RSS", [&](const PosedPair& p) {
+                               fcl::ContinuousCollisionRequestd request(1000, 1e-6, fcl::CCDM_SCREW, fcl::GST_LIBCCD,
+                                                                        fcl::CCDC_CONSERVATIVE_ADVANCEMENT);
+                               fcl::ContinuousCollisionResultd result;
+                               fcl::continuousCollide(fcl_a.get(), transform_of(p.a), transform_of(p.a), fcl_b.get(),
+                                                      transform_of(p.b), transform_of(goal(p)), request, result);
+                               return result.is_collide ? result.time_of_contact : 2;
+                           }});
+#endif
+        compare(what, queries, begin, rounds);
+    }
+}
+
 /// What a signed distance takes: of points at random in the mesh's box, of a grid there, and of single ones.
 void measure_points(const char* kind, std::uint32_t triangles, std::size_t rounds) {
     const auto shape = Shape::make(scenes::scene_model(kind, triangles).mesh);
@@ -185,8 +229,8 @@ void measure_points(const char* kind, std::uint32_t triangles, std::size_t round
 
 void add_queries(CLI::App& app) {
     CLI::App* command = app.add_subcommand(
-        "queries",
-        "intersects() and distance() beside FCL on the same poses, by turns, with ratios; signed_distance()");
+        "queries", "intersects(), distance() and time_of_impact() beside FCL on the same poses, by turns, with ratios; "
+                   "signed_distance()");
     struct Options {
         std::size_t rounds = 7, pairs = 200;
     };
@@ -197,6 +241,9 @@ void add_queries(CLI::App& app) {
         for (const std::uint32_t triangles : {1000u, 20000u})
             for (const char* kind : {"sphere", "gear"})
                 compare_meshes(kind, triangles, options->pairs, options->rounds);
+        for (const std::uint32_t triangles : {1000u, 20000u})
+            for (const char* kind : {"sphere", "gear"})
+                compare_motions(kind, triangles, options->pairs, options->rounds);
         for (const std::uint32_t triangles : {1000u, 10000u})
             for (const char* kind : {"sphere", "gear"}) measure_points(kind, triangles, options->rounds);
     });

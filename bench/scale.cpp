@@ -80,9 +80,18 @@ public:
         }
         const double middle = peers::now().cpu;
         for (std::size_t i = 0; i < count; ++i) hits += scene_.closest_point(place()).has_value();
+        const double last = peers::now().cpu;
+        const Shape& swept = scene_.shape(bodies_[0]);
+        for (std::size_t i = 0; i < count; ++i) {
+            const Vec3 from = place(), way{random.symmetric(), random.symmetric(), random.symmetric()};
+            const double far = 10 * swept.radius();
+            const Vec3 to{from.x + far * way.x, from.y + far * way.y, from.z + far * way.z};
+            hits += scene_.sweep(swept, screw_motion({.translation = from}, {.translation = to})).has_value();
+        }
         const double end = peers::now().cpu;
-        std::printf("queries      %8zu bodies, one thread: a ray %.2f us, a closest point %.2f us (%zu answers)\n",
-                    bodies_.size(), (middle - begin) / count, (end - middle) / count, hits);
+        std::printf("queries      %8zu bodies, one thread: a ray %.2f us, a closest point %.2f us, a sweep %.2f us "
+                    "(%zu answers)\n",
+                    bodies_.size(), (middle - begin) / count, (last - middle) / count, (end - last) / count, hits);
     }
 
 private:

@@ -116,14 +116,23 @@ private:
     Matrix reach_, rate_reach_;
 };
 
-/// After how long a passing box may be within `near` of one that rests in the frame; any axis that keeps them apart
-/// does.
-double time_until_near(const PassingBox& passing, const Vec3& middle, const Vec3& half, double near, double bend) {
-    double longest = 0;
+/// After how long a passing box may be within `near` of one that rests in the frame. Any axis that keeps them apart
+/// does, and so does the direction in which they are apart: where `near` is more than next to nothing, that sees more.
+double time_until_near(const PassingBox& passing, const Vec3& middle, const Vec3& half, const Nearness& near,
+                       double bend) {
+    double longest = 0, square = 0, shrinking = 0;
     for (std::size_t k = 0; k < 3; ++k) {
         const double off = axis(passing.middle, k) - axis(middle, k), sign = off < 0 ? -1 : 1;
-        const double gap = sign * off - axis(passing.half, k) - axis(half, k) - near;
-        longest = std::max(longest, time_until(gap, sign * axis(passing.rate, k) - axis(passing.half_rate, k), bend));
+        const double gap = sign * off - axis(passing.half, k) - axis(half, k);
+        if (!(gap > 0)) continue;
+        const double rate = sign * axis(passing.rate, k) - axis(passing.half_rate, k);
+        longest = std::max(longest, time_until(gap - near.aim(), rate, bend));
+        square += gap * gap;
+        shrinking += gap * rate;
+    }
+    if (near.distance > 0 && square > 0) {
+        const double gap = std::sqrt(square);
+        longest = std::max(longest, time_until(gap - near.aim(), shrinking / gap, bend));
     }
     return longest;
 }
@@ -215,7 +224,6 @@ private:
         const PassingBox passing_other =
             Passing(moment_->pair.out_of(others), moment_->seen_in(side))(other_middle, other_half);
         const double other_bend = pair_.bend(others, other_middle, length(other_half)).change;
-        const double near = aim();
         const Children children =
             children_of(opens_a ? moment_->pair.a() : moment_->pair.b().shape(), opens_a ? pair.a : pair.b);
         for (std::size_t i = 0; i < children.count; ++i) {
@@ -224,17 +232,14 @@ private:
             const double bend = pair_.bend(side, middle, length(half)).change;
             const double time =
                 moment_->time
-                + std::max(time_until_near(into_other(middle, half), other_middle, other_half, near, bend),
-                           time_until_near(passing_other, middle, half, near, other_bend));
+                + std::max(time_until_near(into_other(middle, half), other_middle, other_half, near_, bend),
+                           time_until_near(passing_other, middle, half, near_, other_bend));
             if (opens_a)
                 wait(time, child, other);
             else
                 wait(time, other, child);
         }
     }
-
-    // Half of the tolerance off, so that the closest points keep a direction.
-    double aim() const { return near_.distance + 0.5 * near_.tolerance; }
 
     /// A corner of a triangle, in the centred frame of b, and how it moves in the frame of the other.
     struct Corner {
@@ -271,7 +276,7 @@ private:
         for (std::size_t k = 0; k < 3; ++k) {
             const auto until = [&](const Moving& moving, double gap, double sign) {
                 const Corner& corner = moving.corner[k];
-                const Gap ahead{gap - aim(), sign * dot(way, corner.velocity), sign * dot(way, corner.change)};
+                const Gap ahead{gap - near_.aim(), sign * dot(way, corner.velocity), sign * dot(way, corner.change)};
                 return time_until_gone(ahead, moving.bend, end_ - moment_->time);
             };
             until_a = std::min(until_a, until(a, last - dot(way, a.corner[k].place), -1));

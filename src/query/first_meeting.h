@@ -18,6 +18,8 @@ struct Meeting {
 /// What counts as near, metres: less than `distance`. It is told of triangles that are within `tolerance` of that.
 struct Nearness {
     double distance, tolerance;
+    /// To which searches advance: half of the tolerance before, so that the closest points keep a direction.
+    double aim() const { return distance + 0.5 * tolerance; }
 };
 
 /// The first time from `begin` to `end` at which two surfaces are near; they are not before. Never late; the triangles

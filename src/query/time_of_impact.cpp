@@ -23,10 +23,110 @@ void check_length(double metres, const char* what) {
         throw InputError(std::string("time of impact: the ") + what + " is negative or not finite; give metres");
 }
 
-/// The piece of a path that begins at a pose.
-RigidMotion piece_of(std::span<const Pose> path, std::size_t number) {
-    return path.size() == 1 ? screw_motion(path[0], path[0]) : screw_motion(path[number], path[number + 1]);
+/// What a clearance may be off, metres. Throws InputError as checked_nearness().
+double coarse_tolerance(const Shape& a, const Shape& b, double tolerance) {
+    const double fine = checked_nearness(a, b, 0, tolerance).tolerance;
+    return tolerance > 0 ? fine : 1000 * fine;
 }
+
+/// Two shapes and how they move, a unit of time after the other; checked.
+class Course {
+public:
+    Course(const Shape& a, const RigidMotion& motion_a, const Shape& b, const RigidMotion& motion_b)
+        : a_(a), b_(b), start_a_(motion_a.from),
+          start_b_(motion_b.from), pieces_{{checked_motion(motion_a, "motion of the first mesh"),
+                                            checked_motion(motion_b, "motion of the second mesh")}} {}
+
+    Course(const Shape& a, std::span<const Pose> path_a, const Shape& b, std::span<const Pose> path_b) : a_(a), b_(b) {
+        if (path_a.empty() || path_b.empty()) throw InputError("paths: one has no pose; give one at least");
+        if (path_a.size() > 1 && path_b.size() > 1 && path_a.size() != path_b.size())
+            throw InputError("paths: they have " + std::to_string(path_a.size()) + " and "
+                             + std::to_string(path_b.size()) + " poses; give as many of each, or one of what stays");
+        for (const Pose& pose : path_a) check_placed(pose, "pose of the first mesh");
+        for (const Pose& pose : path_b) check_placed(pose, "pose of the second mesh");
+        start_a_ = path_a[0];
+        start_b_ = path_b[0];
+        const auto piece = [](std::span<const Pose> path, std::size_t number) {
+            return path.size() == 1 ? screw_motion(path[0], path[0]) : screw_motion(path[number], path[number + 1]);
+        };
+        const std::size_t count = std::max({path_a.size(), path_b.size(), std::size_t{2}}) - 1;
+        for (std::size_t number = 0; number < count; ++number)
+            pieces_.push_back({piece(path_a, number), piece(path_b, number)});
+    }
+
+    std::optional<Impact> first_impact(const Nearness& near) const {
+        if (const auto impact = impact_at_start(a_, start_a_, b_, start_b_, near)) return impact;
+        for (std::size_t number = 0; number < pieces_.size(); ++number) {
+            const auto& [motion_a, motion_b] = pieces_[number];
+            if (auto impact = impact_on_the_way(a_, motion_a, b_, motion_b, near)) {
+                impact->time += double(number);
+                return impact;
+            }
+        }
+        return std::nullopt;
+    }
+
+    /// Goes down from where they are nearer than anywhere before, until they are nowhere nearer by the tolerance.
+    std::optional<PathClearance> clearance(double max, double tolerance) const {
+        if (const auto met = first_impact(checked_nearness(a_, b_, 0, 0)))
+            return PathClearance{{met->distance, met->point_a, met->point_b, met->triangle_a, met->triangle_b},
+                                 met->time};
+        PathClearance least = at(0);
+        for (std::size_t number = 1; number <= pieces_.size(); ++number) least = nearer(least, at(double(number)));
+        while (least.distance > tolerance) {
+            const double below = std::min(max, least.distance - tolerance);
+            const auto found = first_impact({below, 0.25 * tolerance});
+            if (!found) break;
+            const PathClearance there = at(found->time);
+            if (!(there.distance < least.distance)) break; // but for rounding
+            least = descend(there);
+        }
+        return least.distance <= max ? std::optional(least) : std::nullopt;
+    }
+
+private:
+    PathClearance at(double time) const {
+        const double number = std::min(std::floor(time), double(pieces_.size() - 1));
+        const auto& [motion_a, motion_b] = pieces_[static_cast<std::size_t>(number)];
+        const Pose pose_a = pose_at(motion_a, time - number), pose_b = pose_at(motion_b, time - number);
+        return {*raycontact::distance(a_, pose_a, b_, pose_b), time};
+    }
+    static const PathClearance& nearer(const PathClearance& one, const PathClearance& other) {
+        return other.distance < one.distance ? other : one;
+    }
+
+    /// A place near where a distance that falls with time is least: by longer and longer steps past it, and then by
+    /// parts of the golden section.
+    PathClearance descend(PathClearance from) const {
+        const double end = double(pieces_.size());
+        PathClearance low = from, high = from;
+        for (double step = 1.0 / 256; high.time < end; step *= 2) {
+            low = from;
+            from = high;
+            high = at(std::min(from.time + step, end));
+            if (high.distance >= from.distance) break;
+        }
+        PathClearance least = nearer(from, high);
+        constexpr double section = 0.381966;
+        double begin = low.time, finish = high.time;
+        for (int round = 0; round < 24; ++round) {
+            const bool after = finish - least.time > least.time - begin;
+            const double time = least.time + section * ((after ? finish : begin) - least.time);
+            const PathClearance there = at(time);
+            if (there.distance < least.distance) {
+                (after ? begin : finish) = least.time;
+                least = there;
+            } else {
+                (after ? finish : begin) = time;
+            }
+        }
+        return least;
+    }
+
+    const Shape &a_, &b_;
+    Pose start_a_, start_b_; ///< as they were given
+    std::vector<std::pair<RigidMotion, RigidMotion>> pieces_;
+};
 
 } // namespace
 
@@ -75,11 +175,7 @@ std::optional<Impact> impact_on_the_way(const Shape& a, const RigidMotion& motio
 std::optional<Impact> time_of_impact(const Shape& a, const RigidMotion& motion_a, const Shape& b,
                                      const RigidMotion& motion_b, double distance, double tolerance) {
     const FloatEnvironment environment;
-    const Nearness near = checked_nearness(a, b, distance, tolerance);
-    const RigidMotion sound_a = checked_motion(motion_a, "motion of the first mesh");
-    const RigidMotion sound_b = checked_motion(motion_b, "motion of the second mesh");
-    if (const auto impact = impact_at_start(a, motion_a.from, b, motion_b.from, near)) return impact;
-    return impact_on_the_way(a, sound_a, b, sound_b, near);
+    return Course(a, motion_a, b, motion_b).first_impact(checked_nearness(a, b, distance, tolerance));
 }
 
 std::optional<Impact> time_of_impact(const Shape& a, const Pose& from_a, const Pose& to_a, const Shape& b,
@@ -90,21 +186,21 @@ std::optional<Impact> time_of_impact(const Shape& a, const Pose& from_a, const P
 std::optional<Impact> time_of_impact(const Shape& a, std::span<const Pose> path_a, const Shape& b,
                                      std::span<const Pose> path_b, double distance, double tolerance) {
     const FloatEnvironment environment;
-    const Nearness near = checked_nearness(a, b, distance, tolerance);
-    if (path_a.empty() || path_b.empty()) throw InputError("time of impact: a path has no pose; give one at least");
-    if (path_a.size() > 1 && path_b.size() > 1 && path_a.size() != path_b.size())
-        throw InputError("time of impact: the paths have " + std::to_string(path_a.size()) + " and "
-                         + std::to_string(path_b.size()) + " poses; give as many of each, or one of what stays");
-    for (const auto& [path, what] : {std::pair{path_a, "pose of the first mesh"}, {path_b, "pose of the second mesh"}})
-        for (const Pose& pose : path) check_placed(pose, what);
+    return Course(a, path_a, b, path_b).first_impact(checked_nearness(a, b, distance, tolerance));
+}
 
-    if (const auto impact = impact_at_start(a, path_a[0], b, path_b[0], near)) return impact;
-    for (std::size_t number = 0; number + 1 < std::max(path_a.size(), path_b.size()); ++number)
-        if (auto impact = impact_on_the_way(a, piece_of(path_a, number), b, piece_of(path_b, number), near)) {
-            impact->time += double(number);
-            return impact;
-        }
-    return std::nullopt;
+std::optional<PathClearance> path_clearance(const Shape& a, const RigidMotion& motion_a, const Shape& b,
+                                            const RigidMotion& motion_b, double max, double tolerance) {
+    const FloatEnvironment environment;
+    check_reach(max, "clearance");
+    return Course(a, motion_a, b, motion_b).clearance(max, coarse_tolerance(a, b, tolerance));
+}
+
+std::optional<PathClearance> path_clearance(const Shape& a, std::span<const Pose> path_a, const Shape& b,
+                                            std::span<const Pose> path_b, double max, double tolerance) {
+    const FloatEnvironment environment;
+    check_reach(max, "clearance");
+    return Course(a, path_a, b, path_b).clearance(max, coarse_tolerance(a, b, tolerance));
 }
 
 } // namespace raycontact

@@ -6,8 +6,9 @@
     print(rc.collide(part, part, pose_b=pose))
 
 `Mesh` and `Shape` hold meshes; `collide`, `intersects`, `distance`, `closest_point`, `signed_distance`, `raycast`,
-`contains` and `time_of_impact` answer questions about one pair or many at once; a `Scene` steps bodies in time. Metres, poses as 4 x 4
-matrices, normals from a to b, depth > 0 where meshes penetrate. Bad input raises InputError, a ValueError.
+`contains`, `time_of_impact` and `path_clearance` answer questions about one pair or many at once; a `Scene` steps
+bodies in time. Metres, poses as 4 x 4 matrices, normals from a to b, depth > 0 where meshes penetrate. Bad input raises
+InputError, a ValueError.
 """
 
 from . import _core
@@ -15,7 +16,7 @@ from ._core import DeviceInfo, InputError, MeshReport, StepStats, list_devices
 from .clash import Clash, Clashes, clash
 from .collision import CollisionManager
 from .contacts import CONTACT_DTYPE, Contacts, FeatureKind, PairContacts
-from .impacts import BodyImpact, Impact, time_of_impact
+from .impacts import BodyImpact, Impact, PathClearance, path_clearance, time_of_impact
 from .mesh import AssemblyPart, Mesh, load_assembly
 from .poses import nearest_rigid, pose, pose_from_quaternion
 from .queries import (
@@ -60,9 +61,10 @@ __all__ = [
     "CONTACT_DTYPE", "AssemblyPart", "BodyClosestPoints", "BodyImpact", "BodyOverlaps", "BodyRayHits", "Clash",
     "Clashes", "ClosestPoint", "CollisionManager", "ContactPatches", "Contacts", "DeviceInfo", "Distance",
     "FeatureKind", "Impact", "InputError", "LostContacts", "Mass", "Mesh", "MeshReport", "OneBodyClosestPoint",
-    "OneBodyRayHit", "OneClosestPoint", "OneDistance", "OneRayHit", "OneSignedDistance", "PairContacts", "RayHit",
-    "RecordedStep", "Recorder", "Recording", "Scene", "Shape", "SheetWarning", "SignedDistance", "StepStats", "box",
-    "clash", "closest_point", "collide", "common_point", "contact_patches", "contains", "distance", "distance_grid",
-    "heightfield", "intersects", "list_devices", "load_assembly", "nearest_rigid", "pose", "pose_from_quaternion",
-    "raycast", "raycast_any", "samples", "show", "signed_distance", "time_of_impact",
+    "OneBodyRayHit", "OneClosestPoint", "OneDistance", "OneRayHit", "OneSignedDistance", "PairContacts",
+    "PathClearance", "RayHit", "RecordedStep", "Recorder", "Recording", "Scene", "Shape", "SheetWarning",
+    "SignedDistance", "StepStats", "box", "clash", "closest_point", "collide", "common_point", "contact_patches",
+    "contains", "distance", "distance_grid", "heightfield", "intersects", "list_devices", "load_assembly",
+    "nearest_rigid", "path_clearance", "pose", "pose_from_quaternion", "raycast", "raycast_any", "samples", "show",
+    "signed_distance", "time_of_impact",
 ]  # fmt: skip

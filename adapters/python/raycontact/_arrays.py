@@ -166,6 +166,10 @@ class Batch:
             items, count = np.broadcast_to(items, self.shape + tail), math.prod(self.shape)
         return np.ascontiguousarray(items).reshape(count, *tail)
 
+    def listed(self, items: list[Any], lead: tuple[int, ...]) -> list[Any]:
+        """`flat` of a list."""
+        return [items[i] for i in self.flat(np.arange(len(items)).reshape(lead), lead)]
+
     def answers(self, columns: tuple[NDArray[Any], ...]) -> tuple[Any, ...]:
         """Of a single item what the columns hold, else arrays of the batch's shape."""
         if self.shape == ():

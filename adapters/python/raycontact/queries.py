@@ -184,15 +184,12 @@ class _Pairs(Batch):
         poses_a, poses_b = as_poses(pose_a, "pose_a", rigid=True), as_poses(pose_b, "pose_b", rigid=True)
         super().__init__(a=lead_a, b=lead_b, pose_a=poses_a.shape[:-2], pose_b=poses_b.shape[:-2])
         self.core = _core.PlacedPairs(
-            self._listed(shapes_a, lead_a),
+            self.listed(shapes_a, lead_a),
             self.flat(poses_a, poses_a.shape[:-2]),
-            self._listed(shapes_b, lead_b),
+            self.listed(shapes_b, lead_b),
             self.flat(poses_b, poses_b.shape[:-2]),
             as_count(threads, "threads"),
         )
-
-    def _listed(self, shapes: list[_core.Shape], lead: tuple[int, ...]) -> list[_core.Shape]:
-        return [shapes[i] for i in self.flat(np.arange(len(shapes)).reshape(lead), lead)]
 
 
 class _Placed(Batch):

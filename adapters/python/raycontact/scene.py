@@ -545,7 +545,7 @@ class Scene:
         first, last = as_poses(begin, "begin", rigid=True), as_poses(end, "end", rigid=True)
         batch = Batch(shapes=lead, begin=first.shape[:-2], end=last.shape[:-2])
         found, body = self._core.sweep(
-            [cores[i] for i in batch.flat(np.arange(len(cores)).reshape(lead), lead)],
+            batch.listed(cores, lead),
             batch.flat(first, first.shape[:-2]),
             batch.flat(last, last.shape[:-2]),
             as_length(distance, "distance"),

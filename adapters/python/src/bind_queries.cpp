@@ -124,18 +124,52 @@ private:
     std::size_t steps_;
 };
 
+/// Two lists of moving shapes.
+struct MovingPairs {
+    const Shapes &a, &b;
+    Paths path_a, path_b;
+    std::size_t count;
+    std::uint32_t threads;
+
+    MovingPairs(const Shapes& first, const Matrices& poses_a, std::size_t steps_a, const Shapes& second,
+                const Matrices& poses_b, std::size_t steps_b, std::uint32_t with_threads)
+        : a(first), b(second), path_a(poses_a, steps_a), path_b(poses_b, steps_b),
+          count(items_of({{"a", a.size()}, {"path_a", path_a.count()}, {"b", b.size()}, {"path_b", path_b.count()}})),
+          threads(with_threads) {}
+
+    template <typename Ask>
+    void for_each(const Ask& ask) const {
+        for_each_item(count, threads, "pair",
+                      [&](std::size_t i) { ask(i, *of_item(a, i), path_a[i], *of_item(b, i), path_b[i]); });
+    }
+};
+using Path = std::span<const Pose>;
+
 nb::tuple times_of_impact(const Shapes& a, const Matrices& poses_a, std::size_t steps_a, const Shapes& b,
                           const Matrices& poses_b, std::size_t steps_b, double distance, double tolerance,
                           std::uint32_t threads) {
-    const Paths paths_a(poses_a, steps_a), paths_b(poses_b, steps_b);
-    const std::size_t n =
-        items_of({{"a", a.size()}, {"path_a", paths_a.count()}, {"b", b.size()}, {"path_b", paths_b.count()}});
-    ImpactColumns first(n);
-    for_each_item(n, threads, "pair", [&](std::size_t i) {
-        const auto found = time_of_impact(*of_item(a, i), paths_a[i], *of_item(b, i), paths_b[i], distance, tolerance);
-        if (found) first.set(i, *found);
+    const MovingPairs pairs(a, poses_a, steps_a, b, poses_b, steps_b, threads);
+    ImpactColumns first(pairs.count);
+    pairs.for_each([&](std::size_t i, const Shape& one, Path path, const Shape& other, Path others) {
+        if (const auto found = time_of_impact(one, path, other, others, distance, tolerance)) first.set(i, *found);
     });
     return first.take();
+}
+
+nb::tuple path_clearances(const Shapes& a, const Matrices& poses_a, std::size_t steps_a, const Shapes& b,
+                          const Matrices& poses_b, std::size_t steps_b, double max, double tolerance,
+                          std::uint32_t threads) {
+    const MovingPairs pairs(a, poses_a, steps_a, b, poses_b, steps_b, threads);
+    DistanceColumns least(pairs.count);
+    LengthColumn time(pairs.count);
+    pairs.for_each([&](std::size_t i, const Shape& one, Path path, const Shape& other, Path others) {
+        const auto found = path_clearance(one, path, other, others, max, tolerance);
+        if (!found) return;
+        least.set(i, *found);
+        time.set(i, found->time);
+    });
+    return nb::make_tuple(least.distance.take(), least.point_a.take(), least.point_b.take(), least.triangle_a.take(),
+                          least.triangle_b.take(), time.take());
 }
 
 nb::tuple closest_points(const Shape& shape, const Matrices& matrices, const Points& given, double max,
@@ -264,6 +298,8 @@ void bind_queries(nb::module_& m) {
     m.def("contact_patches", &all_contact_patches, "pairs"_a);
     m.def("times_of_impact", &times_of_impact, "a"_a, "poses_a"_a, "steps_a"_a, "b"_a, "poses_b"_a, "steps_b"_a,
           "distance"_a, "tolerance"_a, "threads"_a);
+    m.def("path_clearances", &path_clearances, "a"_a, "poses_a"_a, "steps_a"_a, "b"_a, "poses_b"_a, "steps_b"_a,
+          "max"_a, "tolerance"_a, "threads"_a);
     m.def("closest_points", &closest_points, "shape"_a, "poses"_a, "points"_a, "max"_a, "threads"_a);
     m.def("signed_distances", &signed_distances, "shape"_a, "poses"_a, "points"_a, "threads"_a);
     m.def("ray_hits", &ray_hits, "shape"_a, "poses"_a, "origins"_a, "directions"_a, "max"_a, "threads"_a);

@@ -133,6 +133,52 @@ TEST(TimeOfImpact, OfRandomMotionsIsNeverLateAndNotEarly) {
     for (const int count : told) EXPECT_GT(count, pairs / 20);
 }
 
+TEST(PathClearance, OfRandomMotionsIsTheLeast) {
+    const std::vector<ShapePtr> shapes = small_shapes();
+    Random random(7);
+    int apart_count = 0;
+    for (int i = 0; i < 400; ++i) {
+        const Shape &a = *shapes[random.below(std::uint32_t(shapes.size()))],
+                    &b = *shapes[random.below(std::uint32_t(shapes.size()))];
+        const RigidMotion motion_a = any_motion(random, 6), motion_b = any_motion(random, 6);
+        const double tolerance = i % 2 == 0 ? 1e-5 : 0, allowed = i % 2 == 0 ? 1e-5 : 1e-3;
+        const auto found = path_clearance(a, motion_a, b, motion_b, any_distance, tolerance);
+        ASSERT_TRUE(found) << i;
+        const auto distance_at = [&](double time, double max) {
+            return distance(a, pose_at(motion_a, time), b, pose_at(motion_b, time), max);
+        };
+        ASSERT_TRUE(distance_at(found->time, found->distance + 1e-9)) << i;
+        ASSERT_NEAR(apart(found->point_a, found->point_b), found->distance, 1e-9) << i;
+        if (const auto met = time_of_impact(a, motion_a, b, motion_b)) {
+            ASSERT_EQ(found->time, met->time) << i;
+            ASSERT_LE(found->distance, 1e-6) << i;
+            continue;
+        }
+        ++apart_count;
+        ASSERT_GT(found->distance, 0) << i;
+        for (int k = 0; k <= 200; ++k)
+            ASSERT_FALSE(distance_at(k / 200.0, std::max(found->distance - allowed, 0.0))) << i << ": " << k;
+        ASSERT_FALSE(path_clearance(a, motion_a, b, motion_b, std::max(found->distance - 2 * allowed, 0.0), tolerance));
+        const auto within = path_clearance(a, motion_a, b, motion_b, found->distance + 2 * allowed, tolerance);
+        ASSERT_TRUE(within) << i;
+        ASSERT_NEAR(within->distance, found->distance, allowed) << i;
+    }
+    EXPECT_GT(apart_count, 50);
+}
+
+// Past a corner, 0.3 m away at the nearest, between two poses of a path.
+TEST(PathClearance, OfAPathIsBetweenItsPoses) {
+    const ShapePtr part = Shape::make(box_mesh({0.1, 0.1, 0.1})), post = Shape::make(box_mesh({0.5, 0.5, 2}));
+    const std::vector<Pose> path{at({-3, -0.9, 0}), at({2, -0.9, 0}), at({2, 3, 0})}, stays{Pose{}};
+    const auto found = path_clearance(*part, path, *post, stays, any_distance, 1e-6);
+    ASSERT_TRUE(found);
+    EXPECT_NEAR(found->distance, 0.3, 1e-6);
+    EXPECT_GT(found->time, 2.4 / 5 - 1e-3);
+    EXPECT_LT(found->time, 3.6 / 5 + 1e-3);
+    EXPECT_FALSE(path_clearance(*part, path, *post, stays, 0.29));
+    EXPECT_THROW(path_clearance(*part, path, *post, stays, -1), InputError);
+}
+
 TEST(TimeOfImpact, OfAFallIsThatOfTheWay) {
     const ShapePtr floor = Shape::make(box_mesh({5, 5, 1})), part = Shape::make(l_prism_mesh());
     const double low = part->box_min().z;
