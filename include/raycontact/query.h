@@ -139,10 +139,10 @@ struct PathClearance : Distance {
     double time = 0; ///< from 0 to 1; along paths from 0 to their number of poses less 1
 };
 
-/// The least distance of two moving meshes from time 0 to 1, if it is within `max` metres; 0 where they touch, at the
-/// first time. At the time told they are that far apart, as distance() has it; at no time are they nearer by more than
-/// the tolerance. tolerance: metres; 0 takes 1e-4 of the smaller mesh's diagonal. A few times the work of
-/// time_of_impact() and some dozens of distance(). Throws InputError as that does, and for a `max` that is negative or
+/// The least distance of two moving meshes from time 0 to 1, if it is within `max` metres; of those that meet what
+/// time_of_impact() tells. At the time told they are that far apart, as distance() has it; at no time are they nearer
+/// by more than the tolerance. tolerance: metres; 0 takes 1e-4 of the smaller mesh's diagonal. A few times the work of
+/// time_of_impact() and some dozens of distance(). Throws InputError as the first, and for a `max` that is negative or
 /// not a number.
 RAYCONTACT_API std::optional<PathClearance> path_clearance(const Shape& a, const RigidMotion& motion_a, const Shape& b,
                                                            const RigidMotion& motion_b, double max = any_distance,
