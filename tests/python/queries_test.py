@@ -85,6 +85,27 @@ def test_rays_and_points_of_a_torus(torus):
     assert rc.closest_point(torus, [0, 0, 0], max=0.1).distance == np.inf
 
 
+def test_what_overlaps_is_parted(torus, bracket):
+    n = 40
+    poses = helpers.random_poses(n, 1.5)
+    found = rc.separation(torus, bracket, pose_b=poses)
+    touching = rc.intersects(torus, bracket, pose_b=poses)
+    assert 5 < touching.sum() < n and np.array_equal(found.distance < 0, touching)
+    assert np.allclose(np.linalg.norm(found.normal, axis=1), 1)
+    apart = rc.distance(torus, bracket, pose_b=poses).distance
+    assert np.array_equal(found.distance[~touching], apart[~touching])
+    away = poses.copy()
+    away[:, :3, 3] += np.maximum(-found.distance, 0)[:, None] * found.normal
+    assert not rc.intersects(torus, bracket, pose_b=away).any()
+    one = rc.separation(torus, bracket, pose_b=poses[3])
+    assert isinstance(one.distance, float) and one.distance == found.distance[3]
+    # Its gradient: one step further, and the least way out of a box is through its nearest side.
+    box = rc.Shape(rc.box((2, 2, 2)))
+    deep = rc.separation(box, box, pose_b=rc.pose([1.7, 0.2, 0.1]))
+    assert deep.distance == pytest.approx(-0.3, abs=1e-5) and np.allclose(deep.normal, [1, 0, 0], atol=1e-9)
+    assert deep.point_a[0] == pytest.approx(1) and deep.point_b[0] == pytest.approx(0.7)
+
+
 def test_signed_distances_and_grids(torus):
     points = RNG.uniform(-1.5, 1.5, (2000, 3))
     found = rc.signed_distance(torus, points)

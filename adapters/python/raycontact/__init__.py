@@ -28,6 +28,7 @@ from .queries import (
     OneRayHit,
     OneSignedDistance,
     RayHit,
+    Separation,
     SignedDistance,
     closest_point,
     collide,
@@ -39,6 +40,7 @@ from .queries import (
     intersects,
     raycast,
     raycast_any,
+    separation,
     signed_distance,
 )  # fmt: skip
 from .recording import RecordedStep, Recorder, Recording
@@ -62,9 +64,9 @@ __all__ = [
     "Clashes", "ClosestPoint", "CollisionManager", "ContactPatches", "Contacts", "DeviceInfo", "Distance",
     "FeatureKind", "Impact", "InputError", "LostContacts", "Mass", "Mesh", "MeshReport", "OneBodyClosestPoint",
     "OneBodyRayHit", "OneClosestPoint", "OneDistance", "OneRayHit", "OneSignedDistance", "PairContacts",
-    "PathClearance", "RayHit", "RecordedStep", "Recorder", "Recording", "Scene", "Shape", "SheetWarning",
+    "PathClearance", "RayHit", "RecordedStep", "Recorder", "Recording", "Scene", "Separation", "Shape", "SheetWarning",
     "SignedDistance", "StepStats", "box", "clash", "closest_point", "collide", "common_point", "contact_patches",
     "contains", "distance", "distance_grid", "heightfield", "intersects", "list_devices", "load_assembly",
-    "nearest_rigid", "path_clearance", "pose", "pose_from_quaternion", "raycast", "raycast_any", "samples", "show",
-    "signed_distance", "time_of_impact",
+    "nearest_rigid", "path_clearance", "pose", "pose_from_quaternion", "raycast", "raycast_any", "samples",
+    "separation", "show", "signed_distance", "time_of_impact",
 ]  # fmt: skip

@@ -63,6 +63,24 @@ class OneDistance(Distance):
     triangle_b: int
 
 
+class Separation(NamedTuple):
+    """How far two meshes are apart, or how far the second has to go so that they are.
+
+    distance: a float or (n,) float64, metres: of meshes that share no point their distance; else below 0: minus the
+        length of a translation that parts them.
+    normal: (3,) or (n, 3) float64, unit, world frame, from a to b: b moved by -distance along it is parted from a. The
+        gradient of the distance for b's translation.
+    point_a: (3,) or (n, 3) float64, metres, world frame: on the surface of a; of the closest points, once they are
+        parted.
+    point_b: likewise on that of b, which is where it is given.
+    """
+
+    distance: Union[float, NDArray[np.float64]]
+    normal: NDArray[np.float64]
+    point_a: NDArray[np.float64]
+    point_b: NDArray[np.float64]
+
+
 class ContactPatches(NamedTuple):
     """Where pairs of solids press on each other; those of a pair in a row, the largest volume first.
 
@@ -344,6 +362,25 @@ def distance(
             return OneDistance(*one)
     pairs = _Pairs(a, b, pose_a, pose_b, threads, "distance")
     return pairs.answer(OneDistance, Distance, _core.distances(pairs.core, as_length(max, "max")))
+
+
+def separation(
+    a: Shapes,
+    b: Shapes,
+    pose_a: Optional[PoseLike] = None,
+    pose_b: Optional[PoseLike] = None,
+    *,
+    threads: int = 0,
+) -> Separation:
+    """The signed distance of two meshes: outside as `distance` has it, inside by a translation that parts them.
+
+    After that translation they share no point, and are some 1e-6 of the smaller mesh's diagonal apart. Two convex
+    meshes cannot be parted by one that is shorter by 1 %; of others it is the best that a search found.
+
+    Arguments and errors are those of `collide`.
+    """
+    pairs = _Pairs(a, b, pose_a, pose_b, threads, "separation")
+    return Separation(*pairs.answers(_core.separations(pairs.core)))
 
 
 def contact_patches(

@@ -10,6 +10,7 @@
 #include <raycontact/error.h>
 #include <raycontact/query.h>
 #include <raycontact/scene.h>
+#include <raycontact/separation.h>
 
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
@@ -61,6 +62,19 @@ nb::tuple distances(const PlacedPairs& pairs, double max) {
         if (const auto found = distance(a, pose_a, b, pose_b, max)) least.set(i, *found);
     });
     return least.take();
+}
+
+nb::tuple separations(const PlacedPairs& pairs) {
+    LengthColumn distance(pairs.count);
+    VectorColumn normal(pairs.count), point_a(pairs.count), point_b(pairs.count);
+    pairs.for_each([&](std::size_t i, const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) {
+        const Separation found = separation(a, pose_a, b, pose_b);
+        distance.set(i, found.distance);
+        normal.set(i, found.normal);
+        point_a.set(i, found.point_a);
+        point_b.set(i, found.point_b);
+    });
+    return nb::make_tuple(distance.take(), normal.take(), point_a.take(), point_b.take());
 }
 
 nb::tuple all_contact_patches(const PlacedPairs& pairs) {
@@ -295,6 +309,7 @@ void bind_queries(nb::module_& m) {
     m.def("intersects", &intersects_all, "pairs"_a);
     m.def("common_points", &common_points, "pairs"_a);
     m.def("distances", &distances, "pairs"_a, "max"_a);
+    m.def("separations", &separations, "pairs"_a);
     m.def("contact_patches", &all_contact_patches, "pairs"_a);
     m.def("times_of_impact", &times_of_impact, "a"_a, "poses_a"_a, "steps_a"_a, "b"_a, "poses_b"_a, "steps_b"_a,
           "distance"_a, "tolerance"_a, "threads"_a);
