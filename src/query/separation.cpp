@@ -47,28 +47,26 @@ std::vector<Vec3> placed_vertices(const Shape& shape, const Pose& pose, const Ve
     return points;
 }
 
-/// Ways by which the second mesh leaves the first.
+/// Ways by which the second mesh leaves the first; at the beginning that out of their hulls.
 class Exits {
 public:
     Exits(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b)
         : a_(a), b_(b), stays_(no_motion(nearest_rigid_pose(pose_a))), begin_(nearest_rigid_pose(pose_b)),
           hulls_(placed_vertices(a, pose_a, pose_b.translation), placed_vertices(b, pose_b, pose_b.translation)),
-          gap_(gap_share * std::min(a.data().diagonal, b.data().diagonal)) {}
+          gap_(gap_share * std::min(a.data().diagonal, b.data().diagonal)) {
+        const HullExit exit = hulls_.shortest(share, std::max(a.data().diagonal, b.data().diagonal));
+        const double metres = std::max(exit.metres, 0.0) + 2 * gap_;
+        const auto there = distance(a, stays_.from, b, place(metres * exit.way));
+        best_ = {exit.way, metres, {0, there->distance, there->point_a, there->point_b, {}}};
+        try_back(exit.way, metres);
+    }
 
     struct Exit {
         Vec3 way; ///< unit
         double metres;
         Impact last; ///< what is met there on the way back
     };
-    const std::optional<Exit>& best() const { return best_; }
-
-    void try_hulls() {
-        const HullExit exit = hulls_.shortest(share, std::max(a_.data().diagonal, b_.data().diagonal));
-        const double metres = std::max(exit.metres, 0.0) + 2 * gap_;
-        const auto there = distance(a_, stays_.from, b_, place(metres * exit.way));
-        best_ = Exit{exit.way, metres, {0, there->distance, there->point_a, there->point_b, {}}};
-        try_back(exit.way, metres);
-    }
+    const Exit& best() const { return best_; }
 
     /// By the deepest contact, again and again: out of a hole that a hull does not know.
     void try_pushes() {
@@ -80,20 +78,20 @@ public:
             const Contact& deepest = *std::ranges::max_element(contacts, {}, &Contact::depth);
             pushed = pushed + (double(deepest.depth) + 2 * gap_) * unit(deepest.normal);
             if (!is_free(pushed)) continue;
-            if (length(pushed) < best_->metres) try_back(unit(pushed), length(pushed));
+            if (length(pushed) < best_.metres) try_back(unit(pushed), length(pushed));
             return;
         }
     }
 
     /// Whether a way is shorter than the best one: it is free at the end of that.
     bool try_way(const Vec3& way) {
-        return way != Vec3{} && is_free(best_->metres * way) && try_back(way, best_->metres);
+        return way != Vec3{} && is_free(best_.metres * way) && try_back(way, best_.metres);
     }
 
     /// By the normals of what is met, while that helps.
     void follow_normals() {
         constexpr int most = 16;
-        for (int round = 0; round < most && try_way(best_->last.normal); ++round) {
+        for (int round = 0; round < most && try_way(best_.last.normal); ++round) {
         }
     }
 
@@ -101,7 +99,7 @@ public:
     void look_around() {
         for (double turn = 0.3; turn > 0.01; turn *= 0.5) {
             for (bool shorter = true; shorter; follow_normals()) {
-                const Vec3 way = best_->way;
+                const Vec3 way = best_.way;
                 const Vec3 side = unit(cross(way, std::fabs(way.x) < 0.5 ? Vec3{1, 0, 0} : Vec3{0, 1, 0}));
                 const Vec3 up = cross(way, side);
                 shorter = false;
@@ -123,14 +121,16 @@ private:
         return !distance(a_, stays_.from, b_, place(translation), 1.5 * gap_);
     }
 
-    // Comes back from where they are apart to where something is met.
+    // Comes back from where they are apart to where something is met. Whether that is shorter by more than next to
+    // nothing.
     bool try_back(const Vec3& way, double metres) {
         const RigidMotion motion{place(metres * way), -metres * way, {}, {}};
         const auto met = impact_on_the_way(a_, stays_, b_, motion, {0, gap_});
         const double shorter = met ? metres * (1 - met->time) : metres;
-        if (!met || shorter >= best_->metres) return false;
-        best_ = Exit{way, shorter, *met};
-        return true;
+        if (!met || shorter >= best_.metres) return false;
+        const bool tells = shorter < 0.9999 * best_.metres;
+        best_ = {way, shorter, *met};
+        return tells;
     }
 
     const Shape &a_, &b_;
@@ -138,7 +138,7 @@ private:
     Pose begin_;
     HullExits hulls_;
     double gap_;
-    std::optional<Exit> best_;
+    Exit best_;
 };
 
 std::vector<Vec3> normals_of_deepest(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) {
@@ -163,7 +163,6 @@ Separation separation(const Shape& a, const Pose& pose_a, const Shape& b, const 
     const auto apart = *distance(a, pose_a, b, pose_b);
     if (apart.distance > 0) return {apart.distance, unit(apart.point_b - apart.point_a), apart.point_a, apart.point_b};
     Exits exits(a, pose_a, b, pose_b);
-    exits.try_hulls();
     exits.follow_normals();
     if (!is_convex(a.data()) || !is_convex(b.data())) {
         exits.try_pushes();
@@ -173,7 +172,7 @@ Separation separation(const Shape& a, const Pose& pose_a, const Shape& b, const 
         exits.follow_normals();
         exits.look_around();
     }
-    const Exits::Exit& exit = *exits.best();
+    const Exits::Exit& exit = exits.best();
     // What rounding leaves to be done.
     double metres = exit.metres;
     Pose parted = pose_b;
