@@ -163,6 +163,23 @@ def test_gripper(example, tmp_path):
     assert_picture(tmp_path / "field.png")
 
 
+def test_grasps(example):
+    pytest.importorskip("scipy")
+    grasps = example("grasps")
+    text = run("grasps", "--grasps", 300)
+    part, pad = rc.Shape(rc.samples()["mug"]), rc.Shape(rc.box(grasps.PAD))
+    paths = grasps.closing(part, 300, np.random.default_rng(1))
+    first = rc.time_of_impact(pad, part, paths)
+    closed = (np.isfinite(first.time) & (first.time > 0)).all(axis=1)
+    assert number(text, r"(#) of 300 grasps") == closed.sum() and 100 < closed.sum() < 300
+    assert number(text, r"(#) of them hold it") > 0
+    # Where pads stop they touch nothing yet; pressed further they do.
+    poses = grasps.pressed(paths, first.time, 0)[closed].reshape(-1, 4, 4)
+    gaps = rc.distance(pad, part, poses).distance
+    assert (gaps > 0).all() and gaps.max() < 1e-6
+    assert rc.intersects(pad, part, grasps.pressed(paths, first.time, 5e-5)[closed].reshape(-1, 4, 4)).all()
+
+
 def test_methods(example, tmp_path):
     methods = example("methods")
     steps = 60

@@ -16,6 +16,7 @@ from ._core import DeviceInfo, InputError, MeshReport, StepStats, list_devices
 from .clash import Clash, Clashes, clash
 from .collision import CollisionManager
 from .contacts import CONTACT_DTYPE, Contacts, FeatureKind, PairContacts
+from .grasps import wrench_cone
 from .impacts import BodyImpact, Impact, PathClearance, path_clearance, time_of_impact
 from .mesh import AssemblyPart, Mesh, load_assembly
 from .poses import nearest_rigid, pose, pose_from_quaternion
@@ -68,5 +69,5 @@ __all__ = [
     "SignedDistance", "StepStats", "box", "clash", "closest_point", "collide", "common_point", "contact_patches",
     "contains", "distance", "distance_grid", "heightfield", "intersects", "list_devices", "load_assembly",
     "nearest_rigid", "path_clearance", "pose", "pose_from_quaternion", "raycast", "raycast_any", "samples",
-    "separation", "show", "signed_distance", "time_of_impact",
+    "separation", "show", "signed_distance", "time_of_impact", "wrench_cone",
 ]  # fmt: skip
