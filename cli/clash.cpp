@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/commands.h"
 
+#include "cli/clash_path.h"
 #include "cli/number_option.h"
 #include "cli/out_option.h"
 #include "cli/program.h"
@@ -54,8 +55,10 @@ struct Options {
     std::string unit; ///< empty: not told
     bool components = false, volume = false;
     std::uint32_t threads = 0;
-    std::string out, csv, bcf;
+    std::string out, csv, bcf, along, range;
     bool json = false;
+
+    bool moves() const { return !along.empty() || !range.empty(); }
     bool check = false;
 
     const Unit& length_unit() const {
@@ -74,6 +77,8 @@ bool ends_in_3mf(const std::string& file) {
 struct Result {
     std::vector<AssemblyPart> parts;
     ClashReport report;
+    ClashPath path;            ///< --along or --range
+    PathClashReport on_path{}; ///< likewise
     std::size_t ignored = 0;
 
     std::vector<std::string> open() const {
@@ -247,9 +252,15 @@ Result search(const Options& options) {
     how.stop = [] { return stop_signal() != 0; };
     Progress progress("clash", 1000, "");
     how.progress = [&progress](double done) { progress.show(static_cast<std::uint32_t>(1000 * done)); };
-    result.report = find_clashes(result.parts, how);
+    if (options.moves()) {
+        result.path = options.range.empty() ? clash_path_along(options.along, result.parts)
+                                            : clash_path_of_range(options.range, options.length_unit().name);
+        result.on_path = find_path_clashes(result.parts, result.path.moving, result.path.moves, how);
+    } else {
+        result.report = find_clashes(result.parts, how);
+    }
     progress.done();
-    for (const auto& [part, fault] : result.report.faults)
+    for (const auto& [part, fault] : options.moves() ? result.on_path.faults : result.report.faults)
         std::cerr << fmt::format("not checked: {}: {}\n", result.parts[part].name, fault);
     if (options.ignore_touching)
         result.ignored = std::erase_if(result.report.clashes, [&](const Clash& c) {
@@ -264,7 +275,31 @@ void write(std::optional<output::OutFile>& file, const std::string& bytes) {
     file->keep(stop_signal() != 0);
 }
 
+void run_path(const Options& options) {
+    for (const auto& [given, name] : {std::pair{!options.against.empty(), "--against"},
+                                      {options.tolerance > 0, "--tolerance"},
+                                      {options.ignore_touching.has_value(), "--ignore-touching"},
+                                      {options.volume, "--volume"},
+                                      {!options.out.empty(), "--out"},
+                                      {!options.csv.empty(), "--csv"},
+                                      {!options.bcf.empty(), "--bcf"}})
+        if (given) throw InputError(std::string(name) + " says nothing of parts that move; leave it out");
+    const Result result = search(options);
+    const std::string unit = options.length_unit().name;
+    const std::string summary = path_summary(result.on_path, result.parts, result.path, unit);
+    if (options.json) {
+        std::cout << path_json(result.on_path, result.parts, result.path) << std::flush;
+        std::cerr << summary;
+    } else {
+        std::cout << path_table(result.on_path, result.parts, result.path, unit) << summary << std::flush;
+    }
+    if (!options.check || stop_signal() != 0) return;
+    if (!result.on_path.clashes.empty()) throw EndWith{found};
+    if (!result.on_path.faults.empty()) throw std::runtime_error("--check: not all parts could be checked");
+}
+
 void run_clash(const Options& options) {
+    if (options.moves()) return run_path(options);
     if (!options.bcf.empty() && options.unit.empty())
         throw InputError("--bcf: has metres, and nothing says which unit the files have; give --unit m, mm, cm or in");
     auto out = claim(options.files, "--out", options.out, ".glb");
@@ -318,6 +353,17 @@ void add_clash(CLI::App& app) {
         ->type_name("PAIRS")
         ->expected(1)
         ->take_all();
+    auto* along = command
+                      ->add_option("--along", options->along,
+                                   "move parts from pose to pose of this JSON file, and tell what they meet, when "
+                                   "first, and how near they come to what they do not meet")
+                      ->type_name("FILE");
+    command
+        ->add_option("--range", options->range,
+                     "the same of a joint: NAME=turn:AXIS:POINT:FROM:TO with degrees, or NAME=slide:WAY:FROM:TO; each "
+                     "of AXIS, POINT and WAY as x,y,z")
+        ->type_name("JOINT")
+        ->excludes(along);
     const auto add_length = [&](const char* option, auto& length, const char* help) {
         add_number(*command, option, length, help, 0.0, most)->type_name("LENGTH");
     };

@@ -109,6 +109,34 @@ RAYCONTACT_API std::vector<AssemblyPart> split_components(const std::vector<Asse
 /// that matches all, and more than 1024 threads.
 RAYCONTACT_API ClashReport find_clashes(std::span<const AssemblyPart> parts, const ClashOptions& options = {});
 
+/// Two parts of which the first moves.
+struct PathClash {
+    std::size_t moving = 0; ///< number of a part
+    std::size_t other = 0;  ///< number of a part that stays
+    bool meet = false;      ///< they do, at `place.time` first; else they are nearest to each other then
+    PathClearance place; ///< time: from 0 to the number of moves less 1; point_a on the moving part, where it is then
+};
+
+/// What find_path_clashes() finds.
+struct PathClashReport {
+    /// Those that meet, the first one first; then those that come no farther apart than ClashOptions::clearance, the
+    /// nearest first; ties in the parts' order.
+    std::vector<PathClash> clashes;
+    /// Of all that stay apart those that come nearest to each other: the least clearance on the way.
+    std::optional<PathClash> nearest;
+    std::size_t pairs = 0; ///< that were tested: their boxes come as near as the clearance
+    std::vector<std::pair<std::size_t, std::string>> faults; ///< as of ClashReport
+};
+
+/// What some parts meet while they move together past all others, and how near they come to what they do not meet.
+/// moving: patterns of their names. moves: poses that bring them from where they are placed to where they are at times
+/// 0, 1, ..., in the frame of the assembly, by a screw from each to the next (time_of_impact()); one at least. Times,
+/// distances and tolerances are those of path_clearance(). Of options count exclude, exclude_parent_child, clearance,
+/// threads, progress and stop. Throws InputError as find_clashes(), and for moves that are none or not rigid.
+RAYCONTACT_API PathClashReport find_path_clashes(std::span<const AssemblyPart> parts,
+                                                 const std::vector<std::string>& moving, std::span<const Pose> moves,
+                                                 const ClashOptions& options = {});
+
 /// The volume that two closed, outward meshes share, m^3, by Shape::file_vertices(); exact but for rounding in double.
 /// No predicate decides anything, so touching and flush faces are no special cases. Where a mesh winds around a point
 /// more than once, as often counts the point. Far slower than contacts. Throws InputError for poses as intersects().

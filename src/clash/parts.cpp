@@ -133,15 +133,6 @@ namespace clash {
 
 namespace {
 
-/// Shapes round vertices to a ten-millionth of their size.
-Box box_of(const Part& part) {
-    std::vector<Vec3> placed;
-    placed.reserve(part.mesh->vertices.size());
-    for (const Vec3& v : part.mesh->vertices) placed.push_back(transform_point(part.pose, v));
-    const Box box = raycontact::box_of(placed);
-    return world_box(box, {}, 1e-6 * length(box.high - box.low));
-}
-
 /// The mesh's name before a message; it may be another part's, too.
 std::string without_name(const std::string& message, const std::string& name) {
     std::string text = message;
@@ -151,6 +142,26 @@ std::string without_name(const std::string& message, const std::string& name) {
 }
 
 } // namespace
+
+// Shapes round vertices to a ten-millionth of their size.
+Box box_of(const Part& part) {
+    std::vector<Vec3> placed;
+    placed.reserve(part.mesh->vertices.size());
+    for (const Vec3& v : part.mesh->vertices) placed.push_back(transform_point(part.pose, v));
+    const Box box = raycontact::box_of(placed);
+    return world_box(box, {}, 1e-6 * length(box.high - box.low));
+}
+
+void check_assembly(std::span<const AssemblyPart> parts, const ClashOptions& options) {
+    for (const auto& [length, what] : {std::pair{options.clearance, "clearance"}, {options.tolerance, "tolerance"}})
+        if (!(length >= 0 && std::isfinite(length)))
+            throw InputError(std::string("clash: the ") + what + " is no length; give a finite number of at least 0");
+    if (parts.size() < 2) throw InputError("clash: " + std::to_string(parts.size()) + " part given; give several");
+    for (const AssemblyPart& part : parts) {
+        if (!part.mesh) throw InputError("clash: " + part.name + " has no mesh");
+        check_pose(part.pose, part.name.c_str());
+    }
+}
 
 double smaller_size(const Part& a, const Part& b) {
     const auto size = [](const Shape& shape) { return length(shape.box_max() - shape.box_min()); };

@@ -17,11 +17,17 @@ struct Part {
     std::string fault;                  ///< why it cannot be tested; empty: it can
 };
 
+/// Throws InputError as find_clashes(), but for names.
+void check_assembly(std::span<const AssemblyPart> parts, const ClashOptions& options);
+
 /// The diagonal of the smaller part's box, metres. Both have shapes.
 double smaller_size(const Part& a, const Part& b);
 
 /// Those of meshes that lie far from their own origin get a copy of them near it, which their poses put back.
 std::vector<Part> parts_of(std::span<const AssemblyPart> parts);
+
+/// About a part as it is placed, and what rounding adds.
+Box box_of(const Part& part);
 
 /// Two parts, by their numbers; the first is the lower.
 struct PartPair {

@@ -262,15 +262,6 @@ std::vector<Answer> search(const std::vector<Part>& parts, std::span<const PartP
     return found;
 }
 
-void check_options(const ClashOptions& options) {
-    const auto check = [](double length, const char* what) {
-        if (!(length >= 0 && std::isfinite(length)))
-            throw InputError(std::string("clash: the ") + what + " is no length; give a finite number of at least 0");
-    };
-    check(options.clearance, "clearance");
-    check(options.tolerance, "tolerance");
-}
-
 } // namespace
 
 const char* to_string(ClashKind kind) {
@@ -279,12 +270,7 @@ const char* to_string(ClashKind kind) {
 }
 
 ClashReport find_clashes(std::span<const AssemblyPart> given, const ClashOptions& options) {
-    check_options(options);
-    if (given.size() < 2) throw InputError("clash: " + std::to_string(given.size()) + " part given; give several");
-    for (const AssemblyPart& part : given) {
-        if (!part.mesh) throw InputError("clash: " + part.name + " has no mesh");
-        check_pose(part.pose, part.name.c_str());
-    }
+    check_assembly(given, options);
     const Selection selection(given, options);
     std::vector<Part> parts = parts_of(given);
     std::vector<PartPair> pairs = near_boxes(parts, std::max(options.clearance, options.tolerance));

@@ -11,6 +11,8 @@ public:
     /// Throws InputError as find_clashes().
     Selection(std::span<const AssemblyPart> parts, const ClashOptions& options);
     bool has(std::size_t a, std::size_t b) const;
+    /// Whether ClashOptions::against, which there is, matches a part.
+    bool is_against(std::size_t part) const { return against_[part] != 0; }
 
 private:
     std::span<const AssemblyPart> parts_;

@@ -71,11 +71,17 @@ public:
         if (const auto met = first_impact(checked_nearness(a_, b_, 0, 0)))
             return PathClearance{{met->distance, met->point_a, met->point_b, met->triangle_a, met->triangle_b},
                                  met->time};
-        PathClearance least = at(0);
-        for (std::size_t number = 1; number <= pieces_.size(); ++number) least = nearer(least, at(double(number)));
+        PathClearance least;
+        if (std::isfinite(max)) {
+            const auto within = first_impact({max, 0.25 * tolerance});
+            if (!within) return std::nullopt;
+            least = descend(at(within->time));
+        } else {
+            least = at(0);
+            for (std::size_t number = 1; number <= pieces_.size(); ++number) least = nearer(least, at(double(number)));
+        }
         while (least.distance > tolerance) {
-            const double below = std::min(max, least.distance - tolerance);
-            const auto found = first_impact({below, 0.25 * tolerance});
+            const auto found = first_impact({least.distance - tolerance, 0.25 * tolerance});
             if (!found) break;
             const PathClearance there = at(found->time);
             if (!(there.distance < least.distance)) break; // but for rounding

@@ -525,4 +525,56 @@ TEST_F(Clash, InstancesObjectsAndSolidsAreParts) {
     EXPECT_NE(text.find(" m  left  x  right  at "), std::string::npos) << text;
 }
 
+TEST_F(Clash, AlongAPathAndOverARange) {
+    write_assembly("row.gltf", {{"left", 0}, {"middle", 3}, {"right", 9}});
+    // Two metres of slide, and the middle is met.
+    const ProgramResult slide = run({"row.gltf", "--range", "left=slide:2,0,0:0:4", "--unit", "m"});
+    EXPECT_EQ(slide.status, 0) << slide.err;
+    EXPECT_NE(slide.out.find("meet"), std::string::npos) << slide.out;
+    EXPECT_NE(slide.out.find("left  x  middle"), std::string::npos) << slide.out;
+    EXPECT_NE(slide.out.find("left and right come nearest, 4"), std::string::npos) << slide.out;
+    const ProgramResult lines = run({"row.gltf", "--range", "left=slide:1,0,0:1:4", "--json"});
+    const json line = json::parse(lines.out);
+    EXPECT_EQ(line["moving"], "left");
+    EXPECT_EQ(line["other"], "middle");
+    EXPECT_TRUE(line["meet"].get<bool>());
+    EXPECT_NEAR(line["at"].get<double>(), 2, 1e-5);
+    // A turn about the far edge of the middle, in degrees; nothing is met below a right angle.
+    EXPECT_EQ(run({"row.gltf", "--range", "left=turn:0,0,1:0,0,0:-360:360", "--check"}).status, 0);
+    const ProgramResult turn = run({"row.gltf", "--range", "left=turn:0,0,1:3,-3,0:0:-170", "--json", "--check"});
+    EXPECT_EQ(turn.status, 3) << turn.err;
+    // Poses of the one part, or moves from where it is: the same way.
+    const auto matrix = [](double x) { return json{1, 0, 0, x, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1}; };
+    folder_.write("poses.json", json{{"moving", "right"}, {"poses", {matrix(9), matrix(5)}}}.dump());
+    folder_.write("moves.json", json{{"moving", {"right"}}, {"moves", {matrix(0), matrix(-4)}}}.dump());
+    const ProgramResult poses = run({"row.gltf", "--along", "poses.json", "--clearance", "1.5"});
+    EXPECT_EQ(poses.out, run({"row.gltf", "--along", "moves.json", "--clearance", "1.5"}).out);
+    EXPECT_NE(poses.out.find("1 m apart"), std::string::npos) << poses.out;
+    EXPECT_NE(poses.out.find("pose 1"), std::string::npos) << poses.out;
+}
+
+TEST_F(Clash, RefusesPathsThatAreNotSound) {
+    write_assembly("row.gltf", {{"left", 0}, {"middle", 3}});
+    const auto refused = [&](std::vector<std::string> words, const std::string& why) {
+        words.insert(words.begin(), "row.gltf");
+        const ProgramResult result = run(words);
+        EXPECT_EQ(result.status, 2) << why;
+        EXPECT_NE(result.err.find(why), std::string::npos) << result.err;
+    };
+    refused({"--range", "left=turn:0,0,1:0:90"}, "NAME=turn:AXIS:POINT:FROM:TO");
+    refused({"--range", "left=slide:0,0,0:0:90"}, "the way is zero");
+    refused({"--range", "left=slide:1,0,0:0:far"}, "\"far\" is no number");
+    refused({"--range", "nobody=slide:1,0,0:0:1"}, "nobody");
+    refused({"--range", "left=slide:1,0,0:0:1", "--volume"}, "--volume");
+    refused({"--along", "none.json"}, "cannot be read");
+    folder_.write("poses.json", R"({"moving": "left", "poses": [[1, 2, 3]]})");
+    refused({"--along", "poses.json"}, "16 numbers");
+    folder_.write("poses.json", R"({"moving": "left"})");
+    refused({"--along", "poses.json"}, "\"moves\"");
+    folder_.write("poses.json", "{");
+    refused({"--along", "poses.json"}, "is no JSON");
+    folder_.write("poses.json", R"({"moving": "l*", "poses": [[1,0,0,0, 0,1,0,0, 0,0,1,0, 0,0,0,1]]})");
+    refused({"--along", "poses.json"}, "of one part");
+}
+
 } // namespace

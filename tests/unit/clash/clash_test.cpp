@@ -309,5 +309,71 @@ TEST(Clash, ProgressIsToldAndASearchCanBeStopped) {
     EXPECT_TRUE(clashes_of(parts, options).empty());
 }
 
+/// A door of 1 m about a hinge at the origin, between a frame that it leaves free and a wall.
+std::vector<AssemblyPart> door_and_walls(const Vec3& off) {
+    const auto at = [&](double x, double y, double z) { return Vec3{off.x + x, off.y + y, off.z + z}; };
+    return {box("door", at(0.1, -0.02, 0), at(1, 0.02, 2)), box("handle", at(0.9, -0.1, 0.9), at(0.95, -0.02, 1)),
+            box("wall", at(-0.5, 0.5, 0), at(0.3, 0.6, 2)), box("far wall", at(-3, -3, 0), at(-2, 3, 2)),
+            box("post", at(0.2, -0.9, 0), at(0.3, -0.8, 2))};
+}
+std::vector<Pose> turns(const Vec3& point, double from, double to) {
+    std::vector<Pose> moves;
+    for (const double angle : {from, 0.5 * (from + to), to}) {
+        Pose move = pose_from_quaternion({}, std::cos(angle / 2), 0, 0, std::sin(angle / 2));
+        const Vec3 moved = transform_point(move, point);
+        move.translation = {point.x - moved.x, point.y - moved.y, point.z - moved.z};
+        moves.push_back(move);
+    }
+    return moves;
+}
+
+TEST(ClashOnAPath, FindsWhatMovingPartsMeetAndHowNearTheyCome) {
+    for (const Vec3& off : {Vec3{}, Vec3{500000, 6000000, 100}}) {
+        const auto parts = door_and_walls(off);
+        // Open by 120 degrees: the far lower edge of the wall is met by the door's face at its nearer corner.
+        const PathClashReport open = find_path_clashes(parts, {"door", "handle"}, turns(off, 0, 2.0944));
+        ASSERT_EQ(open.clashes.size(), 1u);
+        EXPECT_EQ(parts[open.clashes[0].moving].name, "door");
+        EXPECT_EQ(parts[open.clashes[0].other].name, "wall");
+        EXPECT_TRUE(open.clashes[0].meet);
+        const double met = std::atan2(0.5, 0.3) - std::asin(0.02 / std::hypot(0.5, 0.3));
+        EXPECT_NEAR(open.clashes[0].place.time, 2 * met / 2.0944, 1e-5);
+        EXPECT_LE(open.clashes[0].place.time, 2 * met / 2.0944 + 1e-9);
+        // What comes nearest of the others: the handle to the far wall, at the end.
+        ASSERT_TRUE(open.nearest);
+        EXPECT_FALSE(open.nearest->meet);
+        // The other way the handle hits the post; the door comes near it.
+        const PathClashReport back = find_path_clashes(parts, {"door", "handle"}, turns(off, 0, -1.0), {});
+        ASSERT_EQ(back.clashes.size(), 0u);
+        ASSERT_TRUE(back.nearest);
+        EXPECT_EQ(parts[back.nearest->other].name, "post");
+        EXPECT_NEAR(back.nearest->place.time, 2, 1e-3);
+        ClashOptions near;
+        near.clearance = back.nearest->place.distance + 1e-3;
+        const PathClashReport within = find_path_clashes(parts, {"*o*r", "handle"}, turns(off, 0, -1.0), near);
+        ASSERT_FALSE(within.clashes.empty());
+        EXPECT_FALSE(within.clashes[0].meet);
+        EXPECT_NEAR(within.clashes[0].place.distance, back.nearest->place.distance, 1e-3);
+        // What is left out is not asked.
+        ClashOptions without;
+        without.exclude = {{"door", "wall"}};
+        EXPECT_TRUE(find_path_clashes(parts, {"door", "handle"}, turns(off, 0, 1.2), without).clashes.empty());
+    }
+}
+
+TEST(ClashOnAPath, RefusesWhatIsNotSound) {
+    const auto parts = door_and_walls({});
+    const auto moves = turns({}, 0, 1);
+    EXPECT_THROW(find_path_clashes(parts, {"window"}, moves), InputError);
+    EXPECT_THROW(find_path_clashes(parts, {"*"}, moves), InputError);
+    EXPECT_THROW(find_path_clashes(parts, {}, moves), InputError);
+    EXPECT_THROW(find_path_clashes(parts, {"door"}, {}), InputError);
+    std::vector<Pose> skewed = moves;
+    skewed[1].rotation[1] += 0.1;
+    EXPECT_THROW(find_path_clashes(parts, {"door"}, skewed), InputError);
+    EXPECT_THROW(find_path_clashes(parts, {"door"}, moves, {.clearance = -1}), InputError);
+    EXPECT_THROW(find_path_clashes(std::span(parts).first(1), {"door"}, moves), InputError);
+}
+
 } // namespace
 } // namespace raycontact

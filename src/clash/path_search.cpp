@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <raycontact/clash.h>
+
+#include "clash/parts.h"
+#include "clash/selection.h"
+#include "executor/executor.h"
+#include "query/checks.h"
+
+#include <raycontact/error.h>
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace raycontact {
+
+namespace {
+
+using namespace clash;
+
+/// The pose that `then` has once `outer` has moved it.
+Pose product(const Pose& outer, const Pose& then) {
+    Pose pose;
+    for (std::size_t row = 0; row < 3; ++row)
+        for (std::size_t column = 0; column < 3; ++column)
+            pose.rotation[3 * row + column] = outer.rotation[3 * row] * then.rotation[column]
+                                              + outer.rotation[3 * row + 1] * then.rotation[3 + column]
+                                              + outer.rotation[3 * row + 2] * then.rotation[6 + column];
+    pose.translation = transform_point(outer, then.translation);
+    return pose;
+}
+
+/// About all places of a part on its way: of some of them, grown by how far arcs leave their chords.
+Box box_on_the_way(const Part& part, std::span<const Pose> path) {
+    const auto box_at = [&](const Pose& pose) { return box_of(Part{part.mesh, pose, nullptr, {}}); };
+    Box all = box_at(path[0]);
+    constexpr int some = 8;
+    for (std::size_t piece = 0; piece + 1 < path.size(); ++piece) {
+        const RigidMotion motion = screw_motion(path[piece], path[piece + 1]);
+        const double rate = length(motion.angular_velocity);
+        double bulge = 0;
+        for (int k = 1; k <= some; ++k) {
+            const Pose pose = pose_at(motion, double(k) / some);
+            const Box box = box_at(pose);
+            all.add(box);
+            const Vec3 centre = motion.from.translation + motion.centre + double(k) / some * motion.velocity;
+            const double arm =
+                rate > 0 ? length(cross((1 / rate) * motion.angular_velocity, box.middle() - centre)) : 0;
+            // Of the places before and after it, too, which are no farther from the axis than by a part of the way.
+            bulge = std::max(bulge, arm + length(box.high - box.low));
+        }
+        const double grow = rate * rate * bulge / (8 * some * some);
+        all.low = all.low - Vec3{grow, grow, grow};
+        all.high = all.high + Vec3{grow, grow, grow};
+    }
+    return all;
+}
+
+double gap_between(const Box& a, const Box& b) {
+    return length(most(most(a.low - b.high, b.low - a.high), Vec3{}));
+}
+
+struct PathPair {
+    PartPair parts; ///< the moving one first
+    double gap;     ///< of their boxes, metres
+};
+
+/// Parts that move, and what they may meet.
+class PathSearch {
+public:
+    PathSearch(std::span<const AssemblyPart> given, const std::vector<std::string>& moving, std::span<const Pose> moves,
+               const ClashOptions& options)
+        : options_(options), parts_(parts_of(given)), paths_(given.size()) {
+        ClashOptions how = options;
+        how.against = moving;
+        const Selection selection(given, how);
+        std::vector<Box> boxes(given.size());
+        for (std::size_t i = 0; i < given.size(); ++i) {
+            if (selection.is_against(i))
+                for (const Pose& move : moves) paths_[i].push_back(product(move, parts_[i].pose));
+            boxes[i] = selection.is_against(i) ? box_on_the_way(parts_[i], paths_[i]) : box_of(parts_[i]);
+        }
+        for (std::size_t a = 0; a < given.size(); ++a)
+            for (std::size_t b = 0; b < given.size(); ++b)
+                if (selection.is_against(a) && !selection.is_against(b) && selection.has(a, b))
+                    pairs_.push_back({{a, b, false}, gap_between(boxes[a], boxes[b])});
+        std::ranges::stable_sort(pairs_, {}, &PathPair::gap);
+    }
+
+    PathClashReport operator()() {
+        PathClashReport report;
+        const auto far = std::ranges::upper_bound(pairs_, options_.clearance, {}, &PathPair::gap);
+        const std::span near(pairs_.begin(), far);
+        report.pairs = near.size();
+        make_shapes_of(near);
+        std::vector<std::optional<PathClash>> found(near.size());
+        Executor executor(options_.threads);
+        executor.each(near.size(), 1, [&](std::uint32_t i) {
+            if (!options_.stop()) found[i] = ask(near[i].parts, options_.clearance);
+        });
+        std::vector<char> meets(near.size(), 0);
+        for (std::size_t i = 0; i < near.size(); ++i) {
+            if (!found[i]) continue;
+            report.clashes.push_back(*found[i]);
+            meets[i] = found[i]->meet ? 1 : 0;
+        }
+        for (std::size_t i = 0; i < pairs_.size() && !options_.stop(); ++i) {
+            if (i < meets.size() && meets[i] != 0) continue;
+            const double least = report.nearest ? report.nearest->place.distance : any_distance;
+            if (pairs_[i].gap >= least) break;
+            make_shapes_of({&pairs_[i], 1});
+            if (const auto other = i < near.size() && found[i] ? found[i] : ask(pairs_[i].parts, least);
+                other && !other->meet && other->place.distance < least)
+                report.nearest = other;
+        }
+        for (std::size_t i = 0; i < parts_.size(); ++i)
+            if (!parts_[i].fault.empty()) report.faults.emplace_back(i, parts_[i].fault);
+        std::ranges::stable_sort(report.clashes, {}, [](const PathClash& c) {
+            return std::tuple(!c.meet, c.meet ? c.place.time : c.place.distance, c.moving, c.other);
+        });
+        return report;
+    }
+
+private:
+    void make_shapes_of(std::span<const PathPair> pairs) {
+        std::vector<PartPair> wanted;
+        for (const PathPair& pair : pairs)
+            for (const std::size_t i : {pair.parts.a, pair.parts.b})
+                if (!parts_[i].shape && parts_[i].fault.empty()) wanted.push_back({i, i, false});
+        const bool many = pairs.size() > 1;
+        make_shapes(parts_, wanted, options_, [&](std::size_t done, std::size_t total) {
+            if (many) options_.progress(double(done) / double(total));
+        });
+    }
+
+    std::optional<PathClash> ask(const PartPair& pair, double max) const {
+        const Part &a = parts_[pair.a], &b = parts_[pair.b];
+        if (!a.shape || !b.shape) return std::nullopt;
+        const std::span path(paths_[pair.a]), stays(&b.pose, 1);
+        if (const auto met = time_of_impact(*a.shape, path, *b.shape, stays))
+            return PathClash{
+                pair.a,
+                pair.b,
+                true,
+                {{met->distance, met->point_a, met->point_b, met->triangle_a, met->triangle_b}, met->time}};
+        if (!(max > 0)) return std::nullopt;
+        const auto place = path_clearance(*a.shape, path, *b.shape, stays, max);
+        return place ? std::optional(PathClash{pair.a, pair.b, false, *place}) : std::nullopt;
+    }
+
+    const ClashOptions& options_;
+    std::vector<Part> parts_;
+    std::vector<std::vector<Pose>> paths_; ///< of parts that move
+    std::vector<PathPair> pairs_;          ///< the nearest boxes first
+};
+
+} // namespace
+
+PathClashReport find_path_clashes(std::span<const AssemblyPart> parts, const std::vector<std::string>& moving,
+                                  std::span<const Pose> moves, const ClashOptions& options) {
+    check_assembly(parts, options);
+    if (moves.empty()) throw InputError("clash: a path has no move; give one at least");
+    for (const Pose& move : moves) check_placed(move, "move of a path");
+    if (moving.empty()) throw InputError("clash: no part moves; give a name or a pattern");
+    return PathSearch(parts, moving, moves, options)();
+}
+
+} // namespace raycontact
