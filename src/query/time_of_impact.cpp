@@ -15,8 +15,11 @@ namespace raycontact {
 
 namespace {
 
-// The least that can be told apart on the way, in errors of rough points.
-constexpr double roundings = 64;
+/// The least that can be told apart on the way, metres: some errors of rough points, and of poses between others.
+double rounding_at(const MovingPair& pair, double time) {
+    const auto size = [&](Side side) { return length(pose_at(pair.motion(side), time).translation); };
+    return 64 * pair.at(time).pair.error() + 4e-15 * (size(Side::a) + size(Side::b));
+}
 
 void check_length(double metres, const char* what) {
     if (!(metres >= 0 && std::isfinite(metres)))
@@ -163,8 +166,7 @@ std::optional<Impact> impact_on_the_way(const Shape& a, const RigidMotion& motio
                                         double latest) {
     const MovingPair pair(a, motion_a, b, motion_b);
     Nearness near = given;
-    for (const double time : {0.0, 1.0})
-        near.tolerance = std::max(near.tolerance, roundings * pair.at(time).pair.error());
+    for (const double time : {0.0, 1.0}) near.tolerance = std::max(near.tolerance, rounding_at(pair, time));
     const auto met = first_meeting(pair, near, begin, latest);
     if (!met) return std::nullopt;
     const auto moment = pair.at(met->time);
