@@ -73,7 +73,7 @@ public:
         : options_(options), parts_(parts_of(given)), paths_(given.size()) {
         ClashOptions how = options;
         how.against = moving;
-        const Selection selection(given, how);
+        const Selection selection(given, how, "what moves");
         std::vector<Box> boxes(given.size());
         for (std::size_t i = 0; i < given.size(); ++i) {
             if (selection.is_against(i))

@@ -2,6 +2,7 @@
 #include "clash/selection.h"
 
 #include <algorithm>
+#include <string>
 #include <string_view>
 #include <unordered_map>
 
@@ -76,16 +77,16 @@ bool share_one(const std::vector<std::uint32_t>& a, const std::vector<std::uint3
 
 } // namespace
 
-Selection::Selection(std::span<const AssemblyPart> parts, const ClashOptions& options)
+Selection::Selection(std::span<const AssemblyPart> parts, const ClashOptions& options, const char* word)
     : parts_(parts), parent_child_(options.exclude_parent_child) {
     if (options.against.empty() && options.exclude.empty()) return;
     const Names names(parts);
     if (!options.against.empty()) {
         against_.resize(parts.size(), 0);
         for (const std::string& pattern : options.against)
-            for (const std::size_t part : names.matched(pattern, "against")) against_[part] = 1;
+            for (const std::size_t part : names.matched(pattern, word)) against_[part] = 1;
         if (std::ranges::all_of(against_, [](char matched) { return matched != 0; }))
-            throw InputError("against: all parts match, so there is nothing to test them against; name fewer");
+            throw InputError(std::string(word) + ": all parts match, so there is nothing to test them against; name fewer");
     }
     if (options.exclude.empty()) return;
     for (std::size_t k = 0; k < 2; ++k) {

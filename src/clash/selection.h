@@ -8,8 +8,8 @@ namespace raycontact::clash {
 /// Which pairs are asked about: ClashOptions::against, exclude and exclude_parent_child.
 class Selection {
 public:
-    /// Throws InputError as find_clashes().
-    Selection(std::span<const AssemblyPart> parts, const ClashOptions& options);
+    /// Throws InputError as find_clashes(). word: what messages call ClashOptions::against.
+    Selection(std::span<const AssemblyPart> parts, const ClashOptions& options, const char* word = "against");
     bool has(std::size_t a, std::size_t b) const;
     /// Whether ClashOptions::against, which there is, matches a part.
     bool is_against(std::size_t part) const { return against_[part] != 0; }
