@@ -92,16 +92,17 @@ double differing(const std::vector<double>& p, const std::vector<double>& q) {
     return count;
 }
 
+/// Times are multiples of that of the first query; the answers after that of `truth` are compared with it.
 void compare(const std::string& what, std::vector<Query>& queries, const std::vector<PosedPair>& pairs,
-             std::size_t rounds) {
+             std::size_t rounds, std::size_t truth = 0) {
     measure(queries, pairs, rounds);
     const double ours = peers::median(queries[0].microseconds);
     for (const Query& query : queries) {
         const double theirs = peers::median(query.microseconds);
         std::printf("%-34s %-28s %9.2f us", what.c_str(), query.name.c_str(), theirs);
-        if (&query != queries.data())
-            std::printf("   %6.2f times ours, %.0f answers differ", theirs / ours,
-                        differing(queries[0].answers, query.answers));
+        const auto number = static_cast<std::size_t>(&query - queries.data());
+        if (number > 0) std::printf("   %7.2f times the first", theirs / ours);
+        if (number > truth) std::printf(", %.0f answers differ", differing(queries[truth].answers, query.answers));
         std::printf("\n");
     }
     std::fflush(stdout);
@@ -182,7 +183,7 @@ void compare_motions(const char* kind, std::uint32_t triangles, std::size_t pair
                                return result.is_collide ? result.time_of_contact : 2;
                            }});
 #endif
-        compare(what, queries, begin, rounds);
+        compare(what, queries, begin, rounds, 1);
     }
 }
 

@@ -83,7 +83,8 @@ RigidMotion straight_motion(const Pose& from, const Pose& to, const Vec3& body_p
 }
 
 RigidMotion no_motion(const Pose& pose) {
-    return {pose, {}, {}, {}};
+    check_placed(pose, "pose of a motion");
+    return {nearest_rigid_pose(pose), {}, {}, {}};
 }
 
 // What turns is taken off from where it was, so that nothing is lost where the centre is far away.

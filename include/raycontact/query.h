@@ -106,8 +106,8 @@ RAYCONTACT_API std::optional<Vec3> common_point(const Shape& a, const Pose& pose
 struct Impact {
     double time = 0;     ///< from 0 to 1; along paths from 0 to their number of poses less 1
     double distance = 0; ///< between the two points, metres; 0 where they share a point at the start
-    Vec3 point_a;        ///< on the surface of a at that time, world frame
-    Vec3 point_b;        ///< likewise on that of b
+    Vec3 point_a;        ///< on a at that time, world frame: of the triangles that came near first
+    Vec3 point_b;        ///< likewise on b
     Vec3 normal;         ///< from a to b, unit, world frame; zero where they share a point at the start
     std::uint32_t triangle_a = Shape::no_triangle; ///< on which point_a lies, as Distance has it
     std::uint32_t triangle_b = Shape::no_triangle; ///< likewise for point_b

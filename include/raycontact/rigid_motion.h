@@ -25,7 +25,7 @@ RAYCONTACT_API RigidMotion screw_motion(const Pose& from, const Pose& to);
 /// metres. Throws InputError as screw_motion().
 RAYCONTACT_API RigidMotion straight_motion(const Pose& from, const Pose& to, const Vec3& body_point = {});
 
-/// A body that stays where it is.
+/// A body that stays where it is. Throws InputError as screw_motion().
 RAYCONTACT_API RigidMotion no_motion(const Pose& pose);
 
 /// Where the body is at a time, by sine and cosine, whose last bit machines do not share.

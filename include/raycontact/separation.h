@@ -20,10 +20,10 @@ struct Separation {
 
 /// The signed distance of two meshes: outside as distance() has it, inside by a translation. Once b has moved by that,
 /// they share no point, as intersects() has it, and are some 1e-6 of the smaller mesh's diagonal apart. Two convex
-/// meshes cannot be parted by one that is shorter by 1 %. Of others it is the best that was found from stated starts:
-/// the way out of their hulls, pushes by their deepest contacts, the normals of these, and 26 directions of a's frame;
-/// each is gone back until something is in the way, and turned by the normals of what is met there (docs/queries.md).
-/// Throws InputError for poses as intersects().
+/// meshes cannot be parted by one that is shorter by 1 %, but for that gap. Of others it is the best that was found
+/// from stated starts: the way out of their hulls, pushes by their deepest contacts, the normals of these, and 26
+/// directions of a's frame; each is gone back until something is in the way, and turned by the normals of what is met
+/// there (docs/queries.md). Throws InputError for poses as intersects().
 RAYCONTACT_API Separation separation(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b);
 
 } // namespace raycontact

@@ -58,17 +58,20 @@ Children children_of(const ShapeData& shape, const Part& parent) {
         }
         return children;
     }
-    const kernels::TriangleBlock& block = tree.triangle_blocks[parent.index];
-    const auto grow = static_cast<float>(1.001 * (rounding_of(shape) + float_rounding_of(shape.reach)));
-    for (std::size_t lane = 0; lane < TRIANGLE_LANES; ++lane) {
-        if (block.triangle[lane] == NONE || shape.is_flat(block.triangle[lane])) continue;
+    for (const std::uint32_t triangle : tree.triangle_blocks[parent.index].triangle) {
+        if (triangle == NONE || shape.is_flat(triangle)) continue;
         Part& part = children.part[children.count++];
+        const auto [u, v, w] = shape.mesh.triangles[triangle];
+        const Corners corner{shape.file_vertex(u) - shape.centre, shape.file_vertex(v) - shape.centre,
+                             shape.file_vertex(w) - shape.centre};
+        const Vec3 low = least(corner[0], least(corner[1], corner[2]));
+        const Vec3 high = most(corner[0], most(corner[1], corner[2]));
+        constexpr float far = std::numeric_limits<float>::infinity();
         for (std::size_t k = 0; k < 3; ++k) {
-            const float p = block.corner[k][lane], q = block.corner[3 + k][lane], r = block.corner[6 + k][lane];
-            part.low[k] = std::min(std::min(p, q), r) - grow;
-            part.high[k] = std::max(std::max(p, q), r) + grow;
+            part.low[k] = std::nextafter(static_cast<float>(axis(low, k)), -far);
+            part.high[k] = std::nextafter(static_cast<float>(axis(high, k)), far);
         }
-        part.index = block.triangle[lane];
+        part.index = triangle;
         part.kind = Part::Kind::triangle;
         part.of_slivers = parent.of_slivers;
     }
@@ -116,40 +119,61 @@ private:
     Matrix reach_, rate_reach_;
 };
 
+/// Of the axes of a frame, and of any direction.
+struct FrameAcross {
+    std::array<MovingPair::Across, 3> axis;
+    MovingPair::Across any;
+
+    FrameAcross(const MovingPair& pair, Side frame, const MovingPair::Moment& moment) : any(pair.most_across(frame)) {
+        constexpr std::array axes{Vec3{1, 0, 0}, Vec3{0, 1, 0}, Vec3{0, 0, 1}};
+        for (std::size_t k = 0; k < 3; ++k)
+            axis[k] = pair.across(axes[k], moment.seen_in(frame).spin, pair.spin_of(frame));
+    }
+};
+
 /// After how long a passing box may be within `near` of one that rests in the frame. Any axis that keeps them apart
 /// does, and so does the direction in which they are apart: where `near` is more than next to nothing, that sees more.
 double time_until_near(const PassingBox& passing, const Vec3& middle, const Vec3& half, const Nearness& near,
-                       double bend) {
+                       const MovingPair::Rate& bend, const FrameAcross& across) {
     double longest = 0, square = 0, shrinking = 0;
     for (std::size_t k = 0; k < 3; ++k) {
         const double off = axis(passing.middle, k) - axis(middle, k), sign = off < 0 ? -1 : 1;
         const double gap = sign * off - axis(passing.half, k) - axis(half, k);
         if (!(gap > 0)) continue;
         const double rate = sign * axis(passing.rate, k) - axis(passing.half_rate, k);
-        longest = std::max(longest, time_until(gap - near.aim(), rate, bend));
+        longest = std::max(longest, time_until(gap - near.aim(), rate, bend.along(across.axis[k])));
         square += gap * gap;
         shrinking += gap * rate;
     }
     if (near.distance > 0 && square > 0) {
         const double gap = std::sqrt(square);
-        longest = std::max(longest, time_until(gap - near.aim(), shrinking / gap, bend));
+        longest = std::max(longest, time_until(gap - near.aim(), shrinking / gap, bend.along(across.any)));
     }
     return longest;
 }
 
-/// A gap, how fast it grows and how fast that does, along one direction.
+/// A gap, how fast it grows and how fast that does, along one direction; and the most that this and its change can be.
 struct Gap {
-    double metres, rate, change;
+    double metres, rate, change, most, more;
 };
 /// The same of a gap of which more is known; until a horizon, at most. One that shrinks, but less and less, may pass
 /// its least width before its change has changed much.
-double time_until_gone(const Gap& gap, const MovingPair::Bend& bend, double horizon) {
-    const double time = time_until(gap.metres, gap.rate, std::min(bend.change, bend.of_change * horizon - gap.change));
-    const double square = gap.change * gap.change + 2 * bend.of_change * gap.rate;
+double time_until_gone(const Gap& gap, double horizon) {
+    const double time = time_until(gap.metres, gap.rate, std::min(gap.most, gap.more * horizon - gap.change));
+    const double square = gap.change * gap.change + 2 * gap.more * gap.rate;
     if (time >= horizon || !(gap.rate < 0 && gap.change > 0 && square > 0)) return time;
     const double root = std::sqrt(square), least = -2 * gap.rate / (gap.change + root);
-    const double width = gap.metres + least * (gap.rate + least * (gap.change / 2 - least * bend.of_change / 6));
-    return gap.metres > 0 && width > 0 ? std::max(time, (gap.change + root) / bend.of_change) : time;
+    const double width = gap.metres + least * (gap.rate + least * (gap.change / 2 - least * gap.more / 6));
+    return gap.metres > 0 && width > 0 ? std::max(time, (gap.change + root) / gap.more) : time;
+}
+
+/// At right angles to both edges, on the side of `way`; of parallel ones what of `way` is at right angles to the
+/// longer.
+Vec3 away_from_edges(const Vec3& way, const Vec3& a, const Vec3& b) {
+    const Vec3 normal = cross(a, b);
+    if (dot(normal, normal) > 1e-12 * dot(a, a) * dot(b, b)) return (dot(normal, way) < 0 ? -1.0 : 1.0) * unit(normal);
+    const Vec3 edge = dot(a, a) > dot(b, b) ? unit(a) : unit(b);
+    return unit(way - dot(way, edge) * edge);
 }
 
 /// Looks at the pair of parts that may be near first, at the time when they may: parts are opened, and triangles go on
@@ -223,17 +247,18 @@ private:
         const Passing into_other(moment_->pair.out_of(side), moment_->seen_in(others));
         const PassingBox passing_other =
             Passing(moment_->pair.out_of(others), moment_->seen_in(side))(other_middle, other_half);
-        const double other_bend = pair_.bend(others, other_middle, length(other_half)).change;
+        const MovingPair::Rate other_bend = pair_.bend(others, other_middle, length(other_half)).change;
+        const FrameAcross in_own(pair_, side, *moment_), in_others(pair_, others, *moment_);
         const Children children =
             children_of(opens_a ? moment_->pair.a() : moment_->pair.b().shape(), opens_a ? pair.a : pair.b);
         for (std::size_t i = 0; i < children.count; ++i) {
             const Part& child = children.part[i];
             const Vec3 middle = child.middle(), half = child.half();
-            const double bend = pair_.bend(side, middle, length(half)).change;
+            const MovingPair::Rate bend = pair_.bend(side, middle, length(half)).change;
             const double time =
                 moment_->time
-                + std::max(time_until_near(into_other(middle, half), other_middle, other_half, near_, bend),
-                           time_until_near(passing_other, middle, half, near_, other_bend));
+                + std::max(time_until_near(into_other(middle, half), other_middle, other_half, near_, bend, in_others),
+                           time_until_near(passing_other, middle, half, near_, other_bend, in_own));
             if (opens_a)
                 wait(time, child, other);
             else
@@ -272,15 +297,21 @@ private:
             last = std::min(last, dot(way, b.corner[k].place));
         }
         seen.gap = last - first;
+        // Of a's corners where the direction rests in the frame of b, and the other way round.
+        const auto until = [&](const Moving& moving, std::size_t k, double gap, double sign,
+                               const MovingPair::Across& across) {
+            const Corner& corner = moving.corner[k];
+            return time_until_gone({gap - near_.aim(), sign * dot(way, corner.velocity), sign * dot(way, corner.change),
+                                    moving.bend.change.along(across), moving.bend.of_change.along(across)},
+                                   end_ - moment_->time);
+        };
+        const Vec3& spin = moment_->seen_in_b.spin;
+        const MovingPair::Across in_b = pair_.across(way, spin, moment_->spin_b),
+                                 in_a = pair_.across(way, spin, moment_->spin_a);
         double until_a = never, until_b = never;
         for (std::size_t k = 0; k < 3; ++k) {
-            const auto until = [&](const Moving& moving, double gap, double sign) {
-                const Corner& corner = moving.corner[k];
-                const Gap ahead{gap - near_.aim(), sign * dot(way, corner.velocity), sign * dot(way, corner.change)};
-                return time_until_gone(ahead, moving.bend, end_ - moment_->time);
-            };
-            until_a = std::min(until_a, until(a, last - dot(way, a.corner[k].place), -1));
-            until_b = std::min(until_b, until(b, dot(way, b.corner[k].place) - first, 1));
+            until_a = std::min(until_a, until(a, k, last - dot(way, a.corner[k].place), -1, in_b));
+            until_b = std::min(until_b, until(b, k, dot(way, b.corner[k].place) - first, 1, in_a));
         }
         seen.until = std::max(until_a, until_b);
         return seen;
@@ -290,21 +321,28 @@ private:
         const Corners a = moment_->pair.corners_of_a(pair.a.index), b = moment_->pair.corners_of_b(pair.b.index);
         const Face face_a(a), face_b(b);
         const Moving moving_a = moving(Side::a, pair.a, a), moving_b = moving(Side::b, pair.b, b);
-        double until = 0;
+        Along seen{-never, 0};
+        const auto look = [&](const Vec3& way) {
+            if (way == Vec3{}) return;
+            const Along one = along(way, moving_a, moving_b);
+            seen = {std::max(seen.gap, one.gap), std::max(seen.until, one.until)};
+        };
+        const Vec3 across = (b[0] + b[1] + b[2]) - (a[0] + a[1] + a[2]);
         for (const Face* face : {&face_a, &face_b}) {
-            const double size = length(face->normal);
-            if (size == 0) continue;
-            const double side = dot(face->normal, (b[0] + b[1] + b[2]) - (a[0] + a[1] + a[2]));
-            until = std::max(until, along((side < 0 ? -1 / size : 1 / size) * face->normal, moving_a, moving_b).until);
-            if (moment_->time + until > end_) return std::nullopt;
+            look((dot(face->normal, across) < 0 ? -1.0 : 1.0) * unit(face->normal));
+            if (moment_->time + seen.until > end_) return std::nullopt;
         }
         Span span;
         shorten_between(span, face_a, face_b);
-        const Along closest = along(unit(span.b - span.a), moving_a, moving_b);
-        if (closest.gap <= near_.distance + near_.tolerance)
-            return Meeting{moment_->time, pair.a.index, pair.b.index, span.a, span.b};
-        const double next = moment_->time + std::max(until, closest.until);
-        wait(std::max(next, std::nextafter(moment_->time, never)), pair.a, pair.b);
+        const Vec3 way = unit(span.b - span.a);
+        look(way);
+        // Of points next to each other the way between them is rounded, which far corners multiply.
+        const double most = near_.distance + near_.tolerance;
+        if (seen.gap <= most && seen.gap < std::sqrt(span.squared) - 0.01 * near_.tolerance)
+            for (const Vec3& edge_a : face_a.edge)
+                for (const Vec3& edge_b : face_b.edge) look(away_from_edges(way, edge_a, edge_b));
+        if (seen.gap <= most) return Meeting{moment_->time, pair.a.index, pair.b.index, span.a, span.b};
+        wait(std::max(moment_->time + seen.until, std::nextafter(moment_->time, never)), pair.a, pair.b);
         return std::nullopt;
     }
 
@@ -318,10 +356,11 @@ private:
 } // namespace
 
 std::optional<Meeting> first_meeting(const MovingPair& pair, const Nearness& near, double begin, double end) {
-    const double searches = std::max(1.0, std::ceil((end - begin) * pair.turning() / most_turn));
+    const auto searches =
+        static_cast<std::uint64_t>(std::max(1.0, std::ceil((end - begin) * pair.turning() / most_turn)));
     double from = begin;
-    for (double number = 1; number <= searches; ++number) {
-        const double to = number == searches ? end : begin + (end - begin) * (number / searches);
+    for (std::uint64_t number = 1; number <= searches; ++number) {
+        const double to = number == searches ? end : begin + (end - begin) * (double(number) / double(searches));
         if (const auto found = Search(pair, near, from, to)()) return found;
         from = to;
     }

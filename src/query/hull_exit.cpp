@@ -28,20 +28,38 @@ struct Support {
     double reach() const { return dot(way, point); }
 };
 
-/// Directions between three. None has less reach than `least`: the reach of a point is no less between directions than
-/// at the worst of them, where that is not negative.
+/// Directions between three. None has less reach than `least`: that of any point between the supports is no less
+/// between directions than at the worst of them, where that is not negative. Points between two are enough: they keep
+/// long hulls, whose ends are far from each other, from being looked at direction by direction.
 struct Triangle {
     std::array<Support, 3> corner;
-    double least;
+    double least = 0;
 
-    explicit Triangle(const std::array<Support, 3>& corners) : corner(corners), least(0) {
-        for (const Support& of : corner) {
-            double worst = dot(of.point, corner[0].way);
-            for (const Support& at : corner) worst = std::min(worst, dot(of.point, at.way));
-            least = std::max(least, worst);
-        }
+    explicit Triangle(const std::array<Support, 3>& corners) : corner(corners) {
+        std::array<std::array<double, 3>, 3> reach; // of a point along a way
+        for (std::size_t i = 0; i < 3; ++i)
+            for (std::size_t k = 0; k < 3; ++k) reach[i][k] = dot(corner[i].point, corner[k].way);
+        for (std::size_t i = 0; i < 3; ++i) look_between(reach[i], reach[(i + 1) % 3]);
     }
     static bool later(const Triangle& p, const Triangle& q) { return p.least > q.least; }
+
+private:
+    // The worst of three lines is best at an end, or where two of them cross.
+    void look_between(const std::array<double, 3>& p, const std::array<double, 3>& q) {
+        const auto look = [&](double t) {
+            if (!(t >= 0 && t <= 1)) return;
+            double worst = p[0] + t * (q[0] - p[0]);
+            for (std::size_t k = 1; k < 3; ++k) worst = std::min(worst, p[k] + t * (q[k] - p[k]));
+            least = std::max(least, worst);
+        };
+        look(0);
+        look(1);
+        for (std::size_t k = 0; k < 3; ++k) {
+            const std::size_t next = (k + 1) % 3;
+            const double apart = p[next] - p[k], closing = apart - (q[next] - q[k]);
+            if (closing != 0) look(apart / closing);
+        }
+    }
 };
 
 } // namespace

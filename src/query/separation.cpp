@@ -51,7 +51,7 @@ std::vector<Vec3> placed_vertices(const Shape& shape, const Pose& pose, const Ve
 class Exits {
 public:
     Exits(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b)
-        : a_(a), b_(b), stays_(no_motion(nearest_rigid_pose(pose_a))), begin_(nearest_rigid_pose(pose_b)),
+        : a_(a), b_(b), stays_(no_motion(pose_a)), begin_(nearest_rigid_pose(pose_b)),
           hulls_(placed_vertices(a, pose_a, pose_b.translation), placed_vertices(b, pose_b, pose_b.translation)),
           gap_(gap_share * std::min(a.data().diagonal, b.data().diagonal)) {
         const HullExit exit = hulls_.shortest(share, std::max(a.data().diagonal, b.data().diagonal));
@@ -68,18 +68,17 @@ public:
     };
     const Exit& best() const { return best_; }
 
-    /// By the deepest contact, again and again: out of a hole that a hull does not know.
-    void try_pushes() {
+    /// By the deepest contact, again and again: out of a hole that a hull does not know. contacts: where b is.
+    void try_pushes(std::vector<Contact> contacts) {
         Vec3 pushed;
-        for (int round = 0; round < most_pushes; ++round) {
-            const std::vector<Contact> contacts =
-                collide(a_, stays_.from, b_, place(pushed), {.direction = Direction::refined});
-            if (contacts.empty()) return;
+        for (int round = 0; round < most_pushes && !contacts.empty(); ++round) {
             const Contact& deepest = *std::ranges::max_element(contacts, {}, &Contact::depth);
             pushed = pushed + (double(deepest.depth) + 2 * gap_) * unit(deepest.normal);
-            if (!is_free(pushed)) continue;
-            if (length(pushed) < best_.metres) try_back(unit(pushed), length(pushed));
-            return;
+            if (is_free(pushed)) {
+                if (length(pushed) < best_.metres) try_back(unit(pushed), length(pushed));
+                return;
+            }
+            contacts = collide(a_, stays_.from, b_, place(pushed));
         }
     }
 
@@ -141,8 +140,7 @@ private:
     Exit best_;
 };
 
-std::vector<Vec3> normals_of_deepest(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) {
-    std::vector<Contact> contacts = collide(a, pose_a, b, pose_b, {.direction = Direction::refined});
+std::vector<Vec3> normals_of_deepest(std::vector<Contact> contacts) {
     const std::size_t count = std::min(contacts.size(), most_contacts);
     std::ranges::partial_sort(contacts, contacts.begin() + std::ptrdiff_t(count), std::ranges::greater{},
                               &Contact::depth);
@@ -165,8 +163,9 @@ Separation separation(const Shape& a, const Pose& pose_a, const Shape& b, const 
     Exits exits(a, pose_a, b, pose_b);
     exits.follow_normals();
     if (!is_convex(a.data()) || !is_convex(b.data())) {
-        exits.try_pushes();
-        for (const Vec3& normal : normals_of_deepest(a, pose_a, b, pose_b)) exits.try_way(normal);
+        const std::vector<Contact> contacts = collide(a, pose_a, b, pose_b);
+        exits.try_pushes(contacts);
+        for (const Vec3& normal : normals_of_deepest(contacts)) exits.try_way(normal);
         for (int i = 0; i < 27; ++i)
             exits.try_way(unit(rotated(pose_a.rotation, {i % 3 - 1.0, i / 3 % 3 - 1.0, i / 9 - 1.0})));
         exits.follow_normals();

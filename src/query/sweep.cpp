@@ -73,7 +73,7 @@ std::optional<Impact> Sweep::impact(const Shape& body, const Pose& pose, double 
     const Nearness near = checked_nearness(shape_, body, distance_, 0);
     if (begin <= 0)
         if (const auto impact = impact_at_start(shape_, start_, body, pose, near)) return impact;
-    return impact_on_the_way(shape_, motion_, body, no_motion(nearest_rigid_pose(pose)), near, begin, latest);
+    return impact_on_the_way(shape_, motion_, body, no_motion(pose), near, begin, latest);
 }
 
 } // namespace raycontact

@@ -15,6 +15,9 @@ namespace raycontact {
 
 namespace {
 
+/// By unit of time; some microseconds each.
+constexpr double most_radians = 1e6;
+
 /// The least that can be told apart on the way, metres: some errors of rough points, and of poses between others.
 double rounding_at(const MovingPair& pair, double time) {
     const auto size = [&](Side side) { return length(pose_at(pair.motion(side), time).translation); };
@@ -50,18 +53,21 @@ public:
         start_a_ = path_a[0];
         start_b_ = path_b[0];
         const auto piece = [](std::span<const Pose> path, std::size_t number) {
-            return path.size() == 1 ? screw_motion(path[0], path[0]) : screw_motion(path[number], path[number + 1]);
+            return path.size() == 1 ? no_motion(path[0]) : screw_motion(path[number], path[number + 1]);
         };
         const std::size_t count = std::max({path_a.size(), path_b.size(), std::size_t{2}}) - 1;
         for (std::size_t number = 0; number < count; ++number)
             pieces_.push_back({piece(path_a, number), piece(path_b, number)});
     }
 
-    std::optional<Impact> first_impact(const Nearness& near) const {
-        if (const auto impact = impact_at_start(a_, start_a_, b_, start_b_, near)) return impact;
-        for (std::size_t number = 0; number < pieces_.size(); ++number) {
+    /// after: a time until which they are not near.
+    std::optional<Impact> first_impact(const Nearness& near, double after = 0) const {
+        if (after == 0)
+            if (const auto impact = impact_at_start(a_, start_a_, b_, start_b_, near)) return impact;
+        for (auto number = static_cast<std::size_t>(after); number < pieces_.size(); ++number) {
             const auto& [motion_a, motion_b] = pieces_[number];
-            if (auto impact = impact_on_the_way(a_, motion_a, b_, motion_b, near)) {
+            const double begin = std::max(after - double(number), 0.0);
+            if (auto impact = impact_on_the_way(a_, motion_a, b_, motion_b, near, begin)) {
                 impact->time += double(number);
                 return impact;
             }
@@ -75,18 +81,21 @@ public:
             return PathClearance{{met->distance, met->point_a, met->point_b, met->triangle_a, met->triangle_b},
                                  met->time};
         PathClearance least;
+        double after = 0; // until then they are not nearer than what was looked for last
         if (std::isfinite(max)) {
             const auto within = first_impact({max, 0.25 * tolerance});
             if (!within) return std::nullopt;
-            least = descend(at(within->time));
+            after = within->time;
+            least = descend(at(after));
         } else {
             least = at(0);
             for (std::size_t number = 1; number <= pieces_.size(); ++number) least = nearer(least, at(double(number)));
         }
         while (least.distance > tolerance) {
-            const auto found = first_impact({least.distance - tolerance, 0.25 * tolerance});
+            const auto found = first_impact({least.distance - tolerance, 0.25 * tolerance}, after);
             if (!found) break;
-            const PathClearance there = at(found->time);
+            after = found->time;
+            const PathClearance there = at(after);
             if (!(there.distance < least.distance)) break; // but for rounding
             least = descend(there);
         }
@@ -142,6 +151,8 @@ private:
 RigidMotion checked_motion(const RigidMotion& given, const char* what) {
     check_placed(given.from, what);
     for (const Vec3& part : {given.velocity, given.angular_velocity, given.centre}) check_place(part, what);
+    if (!(length(given.angular_velocity) <= most_radians))
+        throw InputError(std::string(what) + ": turns by more than a million radians; give a shorter time");
     RigidMotion motion = given;
     motion.from = nearest_rigid_pose(given.from);
     return motion;

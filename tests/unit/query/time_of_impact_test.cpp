@@ -287,6 +287,61 @@ TEST(TimeOfImpact, PartsThatPassAtAMicrometreDoNotMeet) {
     EXPECT_TRUE(time_of_impact(*wheel, {upright, {2, 0, -2 * gap}, {0, 10, 0}, {}}, *floor, no_motion({})));
 }
 
+// The way between points that nearly touch is rounded, and a large mesh's corners are far from it.
+TEST(TimeOfImpact, OfSmallPartsAndLargeOnesIsNotEarlyEither) {
+    Random random(9);
+    const auto scaled = [](Mesh mesh, double by) {
+        for (Vec3& v : mesh.vertices) v = {by * v.x, by * v.y, by * v.z};
+        return Shape::make(mesh);
+    };
+    int met = 0;
+    for (int i = 0; i < 1500; ++i) {
+        const ShapePtr large = scaled(i % 2 == 0 ? l_prism_mesh() : box_mesh({1, 0.8, 0.6}), random.uniform(5, 10));
+        const ShapePtr small =
+            scaled(i % 3 == 0 ? l_prism_mesh() : box_mesh({1, 0.7, 1.2}), random.uniform(0.005, 0.015));
+        Pose from = random.rotation(), to = random.rotation();
+        from.translation = sum({}, 25, random.direction());
+        to.translation = sum({}, 5, random.in_ball());
+        const RigidMotion motion = screw_motion(from, to), stays = no_motion(random.rotation());
+        const auto impact = time_of_impact(*small, motion, *large, stays);
+        if (!impact) continue;
+        ++met;
+        const double tolerance = 1e-7 * apart(small->box_min(), small->box_max());
+        ASSERT_TRUE(distance(*small, pose_at(motion, impact->time), *large, stays.from, 1.01 * tolerance)) << i;
+    }
+    EXPECT_GT(met, 500);
+    // Sliding and turning on a floor that is a thousand times larger, ten tolerances above it.
+    for (const double size : {1e-1, 1e-2, 1e-3}) {
+        const ShapePtr floor = Shape::make(box_mesh({10, 10, 1})), part = Shape::make(box_mesh({size, size, size}));
+        const double gap = 1e-6 * apart(part->box_min(), part->box_max());
+        for (int i = 0; i < 10; ++i) {
+            const Pose frame = random.rotation();
+            const auto to_world = [&](const Vec3& v) { return transform_point(frame, v); };
+            RigidMotion motion{frame, to_world({18, 0, 0}), to_world({0, 0, 3}), {}};
+            motion.from.translation = to_world({-9, 0.1, 1 + size + gap});
+            EXPECT_FALSE(time_of_impact(*part, motion, *floor, no_motion(frame))) << size;
+        }
+    }
+}
+
+// Faces that turn on each other bend no path across them: discs, hinges, tables.
+TEST(TimeOfImpact, FacesOfManyTrianglesTurnOnEachOther) {
+    const ShapePtr plate = Shape::make(grid_box_mesh(16));
+    Random random(2);
+    const Pose frame = random.rotation();
+    const auto to_world = [&](const Vec3& v) { return transform_point(frame, v); };
+    Pose above = frame;
+    above.translation = to_world({0, 0, 1 + 1e-6});
+    const Vec3 middle = to_world({0.5, 0.5, 0});
+    for (const double other : {0.0, 19.0, -3.0}) {
+        const RigidMotion first{frame, {}, to_world({0, 0, other}), middle};
+        EXPECT_FALSE(time_of_impact(*plate, first, *plate, {above, {}, to_world({0, 0, 20}), middle})) << other;
+        EXPECT_TRUE(
+            time_of_impact(*plate, first, *plate, {above, to_world({0, 0, -2e-6}), to_world({0, 0, 20}), middle}))
+            << other;
+    }
+}
+
 TEST(TimeOfImpact, AlongAPathGoesFromPoseToPose) {
     const ShapePtr part = Shape::make(box_mesh({0.1, 0.1, 0.1})), wall = Shape::make(box_mesh({0.1, 2, 2}));
     // Up, aside, and through the wall in the third piece.
@@ -427,6 +482,8 @@ TEST(TimeOfImpact, RefusesWhatIsNotSound) {
     EXPECT_THROW(time_of_impact(*box, at({3, 0, 0}), {}, *box, {}, {}, -1), InputError);
     EXPECT_THROW(time_of_impact(*box, at({3, 0, 0}), {}, *box, {}, {}, 0, nan), InputError);
     EXPECT_THROW(time_of_impact(*box, moving({}, {0, nan, 0}), *box, no_motion({})), InputError);
+    EXPECT_THROW(time_of_impact(*box, turning({}, {0, 0, 1}, 1e7), *box, no_motion(at({3, 0, 0}))), InputError);
+    EXPECT_THROW(no_motion(skewed), InputError);
     const std::vector<Pose> two(2), three(3), none;
     EXPECT_THROW(time_of_impact(*box, two, *box, three), InputError);
     EXPECT_THROW(time_of_impact(*box, two, *box, none), InputError);
