@@ -564,7 +564,7 @@ class Scene:
     ) -> BodyImpact:
         """All bodies that a moving mesh could meet, each for itself, by time: arrays (n,) and (n, 3).
 
-        Of one shape and (4, 4) poses; else arguments and errors are those of `sweep`.
+        Arguments and errors are those of `sweep`, but one shape, begin and end (4, 4).
         """
         found, body = self._core.sweep_all(
             as_shapes(shape, "shape")[0][0],
@@ -573,7 +573,8 @@ class Scene:
             as_length(distance, "distance"),
             _wanted(wanted),
         )
-        return BodyImpact(*found, body)
+        columns = (*found, body)
+        return BodyImpact(*columns)
 
     @overload
     def distance(self, a: _Id, b: _Id, *, max: float = np.inf) -> OneDistance: ...
