@@ -166,8 +166,9 @@ Separation separation(const Shape& a, const Pose& pose_a, const Shape& b, const 
         const std::vector<Contact> contacts = collide(a, pose_a, b, pose_b);
         exits.try_pushes(contacts);
         for (const Vec3& normal : normals_of_deepest(contacts)) exits.try_way(normal);
-        for (int i = 0; i < 27; ++i)
-            exits.try_way(unit(rotated(pose_a.rotation, {i % 3 - 1.0, i / 3 % 3 - 1.0, i / 9 - 1.0})));
+        for (const double x : {-1, 0, 1})
+            for (const double y : {-1, 0, 1})
+                for (const double z : {-1, 0, 1}) exits.try_way(unit(rotated(pose_a.rotation, {x, y, z})));
         exits.follow_normals();
         exits.look_around();
     }

@@ -57,7 +57,7 @@ public:
         };
         const std::size_t count = std::max({path_a.size(), path_b.size(), std::size_t{2}}) - 1;
         for (std::size_t number = 0; number < count; ++number)
-            pieces_.push_back({piece(path_a, number), piece(path_b, number)});
+            pieces_.emplace_back(piece(path_a, number), piece(path_b, number));
     }
 
     /// after: a time until which they are not near.
