@@ -142,12 +142,12 @@ struct PreparedMesh {
 
 /// What prepare_mesh() does.
 struct PrepareOptions {
-    Repair repair = Repair::allowed;
-    Nesting nesting = Nesting::as_wound;
-    Holes holes = Holes::of_solids;
-    Overlaps overlaps = Overlaps::unite;
-    Check check = Check::full;
-    std::uint32_t threads = 0; ///< 0: one per core; no bit depends on it
+    Repair repair = Repair::allowed;     ///< whether the mesh may be changed
+    Nesting nesting = Nesting::as_wound; ///< which parts that lie in others are cavities
+    Holes holes = Holes::of_solids;      ///< which are spanned
+    Overlaps overlaps = Overlaps::unite; ///< what becomes of parts that cross
+    Check check = Check::full;           ///< how much of the mesh is looked at
+    std::uint32_t threads = 0;           ///< 0: one per core; no bit depends on it
 };
 
 /// Welds, checks and, where allowed, repairs. Throws InputError naming the mesh for: no triangles or too many, an index
