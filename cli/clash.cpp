@@ -57,9 +57,9 @@ struct Options {
     std::uint32_t threads = 0;
     std::string out, csv, bcf, along, range;
     bool json = false;
+    bool check = false;
 
     bool moves() const { return !along.empty() || !range.empty(); }
-    bool check = false;
 
     const Unit& length_unit() const {
         for (const Unit& known : units)
@@ -286,7 +286,8 @@ void run_path(const Options& options) {
         if (given) throw InputError(std::string(name) + " says nothing of parts that move; leave it out");
     const Result result = search(options);
     const std::string unit = options.length_unit().name;
-    const std::string summary = path_summary(result.on_path, result.parts, result.path, unit);
+    std::string summary = path_summary(result.on_path, result.parts, result.path, unit);
+    if (stop_signal() != 0) summary += fmt::format("cut short by {}\n", stop_name());
     if (options.json) {
         std::cout << path_json(result.on_path, result.parts, result.path) << std::flush;
         std::cerr << summary;

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <raycontact/clash.h>
 
+#include "broadphase/world_box.h"
 #include "clash/parts.h"
 #include "clash/selection.h"
 #include "executor/executor.h"
 #include "query/checks.h"
+#include "query/shape_pair.h"
 
 #include <raycontact/error.h>
 
@@ -19,41 +21,27 @@ namespace {
 using namespace clash;
 
 /// The pose that `then` has once `outer` has moved it.
-Pose product(const Pose& outer, const Pose& then) {
-    Pose pose;
-    for (std::size_t row = 0; row < 3; ++row)
-        for (std::size_t column = 0; column < 3; ++column)
-            pose.rotation[3 * row + column] = outer.rotation[3 * row] * then.rotation[column]
-                                              + outer.rotation[3 * row + 1] * then.rotation[3 + column]
-                                              + outer.rotation[3 * row + 2] * then.rotation[6 + column];
-    pose.translation = transform_point(outer, then.translation);
-    return pose;
+Pose moved(const Pose& outer, const Pose& then) {
+    return {product_of(outer.rotation, then.rotation), transform_point(outer, then.translation)};
 }
 
 /// About all places of a part on its way: of some of them, grown by how far arcs leave their chords.
 Box box_on_the_way(const Part& part, std::span<const Pose> path) {
-    const auto box_at = [&](const Pose& pose) { return box_of(Part{part.mesh, pose, nullptr, {}}); };
-    Box all = box_at(path[0]);
+    const Box own = box_of(Part{part.mesh, {}, nullptr, {}});
+    Box all = world_box(own, path[0], 0);
     constexpr int some = 8;
+    double grow = 0;
     for (std::size_t piece = 0; piece + 1 < path.size(); ++piece) {
         const RigidMotion motion = screw_motion(path[piece], path[piece + 1]);
+        for (int k = 1; k <= some; ++k) all.add(world_box(own, pose_at(motion, double(k) / some), 0));
+        // No point changes its distance from the axis of a screw.
         const double rate = length(motion.angular_velocity);
-        double bulge = 0;
-        for (int k = 1; k <= some; ++k) {
-            const Pose pose = pose_at(motion, double(k) / some);
-            const Box box = box_at(pose);
-            all.add(box);
-            const Vec3 centre = motion.from.translation + motion.centre + double(k) / some * motion.velocity;
-            const double arm =
-                rate > 0 ? length(cross((1 / rate) * motion.angular_velocity, box.middle() - centre)) : 0;
-            // Of the places before and after it, too, which are no farther from the axis than by a part of the way.
-            bulge = std::max(bulge, arm + length(box.high - box.low));
-        }
-        const double grow = rate * rate * bulge / (8 * some * some);
-        all.low = all.low - Vec3{grow, grow, grow};
-        all.high = all.high + Vec3{grow, grow, grow};
+        const Vec3 arm = transform_point(motion.from, own.middle()) - motion.from.translation - motion.centre;
+        const double farthest = length(cross(motion.angular_velocity, arm)) + 0.5 * rate * length(own.high - own.low);
+        grow = std::max(grow, rate * farthest / (8 * some * some));
     }
-    return all;
+    const Vec3 more{grow, grow, grow};
+    return {all.low - more, all.high + more};
 }
 
 double gap_between(const Box& a, const Box& b) {
@@ -77,13 +65,14 @@ public:
         std::vector<Box> boxes(given.size());
         for (std::size_t i = 0; i < given.size(); ++i) {
             if (selection.is_against(i))
-                for (const Pose& move : moves) paths_[i].push_back(product(move, parts_[i].pose));
+                for (const Pose& move : moves) paths_[i].push_back(moved(move, parts_[i].pose));
             boxes[i] = selection.is_against(i) ? box_on_the_way(parts_[i], paths_[i]) : box_of(parts_[i]);
         }
-        for (std::size_t a = 0; a < given.size(); ++a)
-            for (std::size_t b = 0; b < given.size(); ++b)
-                if (selection.is_against(a) && !selection.is_against(b) && selection.has(a, b))
-                    pairs_.push_back({{a, b, false}, gap_between(boxes[a], boxes[b])});
+        for (std::size_t a = 0; a < given.size(); ++a) {
+            if (!selection.is_against(a)) continue;
+            for (std::size_t b = 0; b < given.size(); ++b) // has() leaves out those that move, too
+                if (selection.has(a, b)) pairs_.push_back({{a, b, false}, gap_between(boxes[a], boxes[b])});
+        }
         std::ranges::stable_sort(pairs_, {}, &PathPair::gap);
     }
 
