@@ -3,6 +3,7 @@
 
 #include "mesh/vector.h"
 #include "query/checks.h"
+#include "query/shape_pair.h"
 
 #include <array>
 #include <cmath>
@@ -12,15 +13,6 @@ namespace raycontact {
 namespace {
 
 using Rotation = std::array<double, 9>;
-
-Rotation product_with_transpose(const Rotation& left, const Rotation& right) {
-    Rotation product;
-    for (std::size_t row = 0; row < 3; ++row)
-        for (std::size_t column = 0; column < 3; ++column)
-            product[3 * row + column] = left[3 * row] * right[3 * column] + left[3 * row + 1] * right[3 * column + 1]
-                                        + left[3 * row + 2] * right[3 * column + 2];
-    return product;
-}
 
 // The axis, as long as the angle, of at most half a turn. By the largest part of the quaternion, so that no angle is
 // inaccurate (Shepperd 1978).
@@ -57,7 +49,7 @@ struct Ends {
         check_placed(last, "last pose of a motion");
         from = nearest_rigid_pose(first);
         to = nearest_rigid_pose(last);
-        if (from.rotation != to.rotation) turn = rotation_vector(product_with_transpose(to.rotation, from.rotation));
+        if (from.rotation != to.rotation) turn = rotation_vector(product_of(to.rotation, inverse_of(from.rotation)));
     }
 };
 
