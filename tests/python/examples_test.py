@@ -142,7 +142,7 @@ def test_gripper(example, tmp_path):
     part = parts.knot()
     shape, faces = rc.Shape(part), brute_force.triangles_of(part)
     points = gripper.grid(shape, 40).reshape(-1, 3)
-    field = gripper.signed_distance(shape, points)
+    field = rc.signed_distance(shape, points).distance
     assert 1e3 * field.min() == pytest.approx(number(text, r": (#) to # mm"), abs=1e-3)
     some = np.random.default_rng(2).choice(len(points), 200, replace=False)
     inside = brute_force.winding(points[some], faces) > 0.5

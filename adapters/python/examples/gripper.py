@@ -12,11 +12,6 @@ import picture
 import raycontact as rc
 
 
-def signed_distance(shape: rc.Shape, points: np.ndarray) -> np.ndarray:
-    """(n,) metres from points (n, 3) to the surface, < 0 inside. The mesh must be closed."""
-    return np.where(rc.contains(shape, points), -1.0, 1.0) * rc.closest_point(shape, points).distance
-
-
 def grid(shape: rc.Shape, cells: int) -> np.ndarray:
     """(cells, cells, 3): points of the plane z = 0 around a shape, first row at the greatest y."""
     half = 1.3 * np.abs(shape.box[:, :2]).max()
@@ -43,23 +38,20 @@ def main() -> None:
         raise SystemExit(f"{part.name}: {part.report.verdict}")
 
     points = grid(part, options.cells)
-    field = signed_distance(part, points.reshape(-1, 3)).reshape(options.cells, -1)
+    field = rc.signed_distance(part, points).distance
     cell = points[0, 1, 0] - points[0, 0, 0]
     print(f"{field.size} distances to {part.name}: {1e3 * field.min():.3f} to {1e3 * field.max():.3f} mm")
     print(f"inside: {1e4 * (field < 0).sum() * cell**2:.2f} cm^2 of the plane z = 0")
 
-    # Pads that are open wide close by their distance to the part, which is never too far (conservative advancement).
-    opening = 4 * part.radius
-    for step in range(1, 100):
-        gap = rc.distance(finger, part, pose_a=fingers(opening)).distance.min()
-        if gap < 1e-6:
-            break
-        opening -= 2 * gap
+    # Pads that are open wide close until the first one touches.
+    wide = 4 * part.radius
+    paths = np.stack((fingers(wide), fingers(0.0)), axis=1)
+    opening = wide * (1 - rc.time_of_impact(finger, part, paths).time.min())
     near = rc.distance(finger, part, pose_a=fingers(opening))
     side = int(np.argmin(near.distance))
     where = ", ".join(f"{1e3 * x:.3f}" for x in near.point_b[side])
     first, other = ("left", "right")[side], 1e3 * near.distance.max()
-    print(f"closed to {1e3 * opening:.3f} mm in {step} steps; the {first} pad touches first, at ({where}) mm")
+    print(f"closed to {1e3 * opening:.3f} mm; the {first} pad touches first, at ({where}) mm")
     print(f"the other pad is {other:.3f} mm away; intersect: {rc.intersects(finger, part, fingers(opening)).any()}")
 
     if options.picture:
