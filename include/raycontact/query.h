@@ -136,7 +136,8 @@ RAYCONTACT_API std::optional<Impact> time_of_impact(const Shape& a, std::span<co
 
 /// The least distance of two meshes on their ways, and when that is.
 struct PathClearance : Distance {
-    double time = 0; ///< from 0 to 1; along paths from 0 to their number of poses less 1
+    double time = 0;   ///< from 0 to 1; along paths from 0 to their number of poses less 1
+    bool meet = false; ///< they meet, as time_of_impact() with the same tolerance has it
 };
 
 /// The least distance of two moving meshes from time 0 to 1, if it is within `max` metres; of those that meet what
@@ -159,7 +160,22 @@ struct ContactPatch {
     double depth = 0;  ///< the mean: volume / area, metres
     Vec3 centre;       ///< of that volume, world frame: where its pressure acts
     Vec3 normal;       ///< from a to b, unit, world frame: the way in which b leaves a there
+    /// The corners of the convex hull of what presses there, in the plane through `centre` across the normal, world
+    /// frame; counter-clockwise where the normal points at the reader. What presses lies at most 1e-9 of its size
+    /// beyond it.
+    std::vector<Vec3> hull{};
 };
+
+/// A force and its torque about a point, world frame.
+struct Wrench {
+    Vec3 force;  ///< newtons
+    Vec3 torque; ///< newton metres
+};
+
+/// What a patch without friction can do to b, however its pressure is spread: wrenches of 1 N each along the normal at
+/// the corners of the hull, in their order, with torques about a point of the world. Sums of them with factors from 0
+/// on are all there is.
+RAYCONTACT_API std::vector<Wrench> wrench_basis(const ContactPatch& patch, const Vec3& about);
 
 /// The patches in which two solids overlap, the largest volume first. How finely a mesh is divided does not matter. A
 /// pressure that grows with depth pushes with stiffness x volume along the normal at the centre (Hasegawa and Sato

@@ -13,6 +13,7 @@
 #include <raycontact/step_stats.h>
 #include <raycontact/user_memory.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -38,6 +39,16 @@ struct BodyClosestPoint : ClosestPoint {
 /// When a moving mesh, which is the first of the two, meets a body, and where.
 struct BodyImpact : Impact {
     BodyId body{}; ///< that is met
+};
+
+/// Two bodies that touch, or no longer do.
+struct Touch {
+    BodyId body_a;     ///< has the lower slot
+    BodyId body_b;     ///< has the higher slot
+    Vec3 point;        ///< between the witness points of the deepest contact of the last step that had any, world frame
+    Vec3f normal;      ///< that contact's
+    float depth = 0;   ///< that contact's
+    bool sensor = false; ///< one of them is a sensor: it has no contacts
 };
 
 /// Bodies with shapes and poses. It finds every contact between them where they are; it moves nothing. A step is one
@@ -89,6 +100,23 @@ public:
     /// find_contacts() pairs two bodies only if the groups of each have a bit in common with the mask of the other. At
     /// first a body is in group 1, and its mask has all bits. find_contacts(pairs) tests every pair that it is given.
     void set_filter(BodyId body, std::uint32_t groups, std::uint32_t mask);
+    /// A static body makes no pair with another static one: for the level, and for bodies that sleep. What touched when
+    /// both became static goes on touching until either moves or is static no more. At first no body is static.
+    /// find_contacts(pairs) tests every pair that it is given.
+    void set_static(BodyId body, bool is_static);
+    /// As set_static() has it.
+    bool is_static(BodyId body) const;
+    /// A sensor has no contacts: what touches it is told by begun(), ended() and touching() alone. It counts from the
+    /// next step on.
+    void set_sensor(BodyId body, bool is_sensor);
+    /// As set_sensor() has it.
+    bool is_sensor(BodyId body) const;
+    /// Asked about each pair that would come into being, as its boxes begin to touch, on the thread of the step: false
+    /// keeps the two apart. The first body has the lower slot. It is asked again about a pair that it keeps apart when
+    /// one of the two moves, and about all pairs after it was set. It must not change the scene; what it throws, the
+    /// step throws. Empty: none.
+    /// find_contacts(pairs) tests every pair that it is given.
+    void set_pair_filter(std::function<bool(BodyId, BodyId)> filter);
     /// It was added here and not removed.
     bool has(BodyId body) const noexcept;
     /// How many bodies are in the scene.
@@ -131,6 +159,31 @@ public:
     std::span<const Contact> contacts(BodyId a, BodyId b) const;
     /// What touched in the last step and does not in this one, in the same order; `Contact::is_new` marks the new ones.
     std::span<const LostContact> lost_contacts() const noexcept;
+    /// Pairs of bodies that touch since the last step, those of sensors, too; by slots. Two bodies begin to touch with a
+    /// contact that touches, or with a speculative one that will, if both go on to where they are expected
+    /// (set_next_pose()). They end when they have no contact that touches and are farther apart than speculative_share
+    /// of the smaller body's box diagonal. So a body that rests, and trembles, touches all the time.
+    std::span<const Touch> begun() const noexcept;
+    /// Pairs that no longer touch, and those of which a body was removed since the last step; by slots.
+    std::span<const Touch> ended() const noexcept;
+    /// All pairs that touch; by slots.
+    std::span<const Touch> touching() const noexcept;
+    /// Removes all bodies, as remove() does: touches of theirs are told as ended by the next step. No id is given again.
+    void clear();
+
+    /// All that later steps depend on, but for meshes, settings and the pair filter: bodies with ids, poses, filters
+    /// and numbers, contacts, touches, and what the method keeps of pairs. Call it between two steps. Throws
+    /// std::runtime_error where a device fails.
+    std::vector<std::byte> save_state() const;
+    /// The shapes that save_state() names by their places: each once, by the lowest slot that has it.
+    std::vector<std::shared_ptr<const Shape>> shapes() const;
+    /// Puts back what save_state() told, in this scene or in another one with equal settings (devices and threads may
+    /// differ): later steps find, bit for bit, what they found after it. Ids mean again what they meant. shapes: those
+    /// of shapes() when it was saved, in their order. What was here is gone, and nothing is told of it. Throws
+    /// InputError for bytes that are damaged or of another version, other settings or other shapes, before anything
+    /// changes; and std::runtime_error where a device fails: then the scene has no bodies.
+    void load_state(std::span<const std::byte> state, std::span<const std::shared_ptr<const Shape>> shapes);
+
     /// What the last step did.
     const StepStats& stats() const noexcept;
     /// The pairs of the last step, sorted by their slots; without those of bodies that have been removed since. Makes
@@ -159,6 +212,10 @@ public:
     /// Whether raycast() has a hit; ends at the first one found. Throws InputError as it does.
     bool raycast_any(const Vec3& origin, const Vec3& direction, double max = any_distance,
                      const Wanted& wanted = {}) const;
+    /// Each body that a ray meets within `max` metres, with its first hit: by distance, then by slot. Throws InputError
+    /// as raycontact::raycast().
+    std::vector<BodyRayHit> raycast_all(const Vec3& origin, const Vec3& direction, double max = any_distance,
+                                        const Wanted& wanted = {}) const;
     /// The closest point of all surfaces, within `max` metres. Throws InputError as raycontact::closest_point().
     std::optional<BodyClosestPoint> closest_point(const Vec3& point, double max = any_distance,
                                                   const Wanted& wanted = {}) const;

@@ -10,6 +10,13 @@
 
 namespace raycontact {
 
+/// A ball, or a capsule: all points within `radius` of a segment. Body frame, metres.
+struct Round {
+    Vec3 from;         ///< one end of the segment
+    Vec3 to;           ///< its other end; a ball's is the same
+    double radius = 0; ///< metres
+};
+
 /// An immutable triangle mesh made ready for rays: welded and checked, with adjacency, angle-weighted vertex normals,
 /// exit distances, vertex clusters and a BVH. Share one among any number of bodies; safe to use from any thread.
 class RAYCONTACT_API Shape : public std::enable_shared_from_this<Shape> {
@@ -40,6 +47,10 @@ public:
     const MeshReport& report() const noexcept; ///< what the mesh is, and what was repaired
     /// It is closed and wound alike everywhere, so that a point can be inside it.
     bool has_inside() const noexcept;
+
+    /// What the shape is, where it is round (primitives.h); null for meshes. Queries and contacts go by it; the mesh of
+    /// such a shape is a picture of it.
+    const Round* round() const noexcept;
 
     /// Body frame. Kernels see vertices relative to `centre` (the middle of the box) in float32, so that meshes far
     /// from their origin lose nothing; these positions are centre + float32 offset, in double.

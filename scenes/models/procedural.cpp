@@ -26,13 +26,9 @@ std::uint32_t nearest_count(double value) {
     return static_cast<std::uint32_t>(std::floor(value + 0.5));
 }
 
-Vec3 unit(const Vec3& v) {
-    const double length = std::sqrt(v.x * v.x + v.y * v.y + v.z * v.z);
-    return {v.x / length, v.y / length, v.z / length};
-}
-
-Vec3 cross(const Vec3& a, const Vec3& b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+// Its own division: the models' coordinates, and so recorded hashes, depend on each bit.
+Vec3 normalized(const Vec3& v) {
+    return v / length(v);
 }
 
 /// Joins the rings one after another, the last to the first.
@@ -64,18 +60,18 @@ double hare_radius(const Vec3& d) {
         double length;
         int sharpness; ///< its cosine is squared so often
     };
-    static const std::array<Lobe, 12> lobes{{{unit({-0.80, -0.45, 0}), 0.36, 2},
-                                             {unit({0, -1, 0}), 0.16, 2},
-                                             {unit({0.52, 0.75, 0}), 0.40, 3},
-                                             {unit({0.86, 0.50, 0}), 0.16, 5},
-                                             {unit({0.05, 0.96, 0.30}), 0.72, 6},
-                                             {unit({0.05, 0.96, -0.30}), 0.72, 6},
-                                             {unit({-0.96, -0.05, 0}), 0.16, 6},
-                                             {unit({0.62, -0.75, 0.20}), 0.22, 5},
-                                             {unit({0.62, -0.75, -0.20}), 0.22, 5},
-                                             {unit({0.05, -0.85, 0.45}), 0.22, 4},
-                                             {unit({0.05, -0.85, -0.45}), 0.22, 4},
-                                             {unit({0, 0, 1}), 0.02, 2}}};
+    static const std::array<Lobe, 12> lobes{{{normalized({-0.80, -0.45, 0}), 0.36, 2},
+                                             {normalized({0, -1, 0}), 0.16, 2},
+                                             {normalized({0.52, 0.75, 0}), 0.40, 3},
+                                             {normalized({0.86, 0.50, 0}), 0.16, 5},
+                                             {normalized({0.05, 0.96, 0.30}), 0.72, 6},
+                                             {normalized({0.05, 0.96, -0.30}), 0.72, 6},
+                                             {normalized({-0.96, -0.05, 0}), 0.16, 6},
+                                             {normalized({0.62, -0.75, 0.20}), 0.22, 5},
+                                             {normalized({0.62, -0.75, -0.20}), 0.22, 5},
+                                             {normalized({0.05, -0.85, 0.45}), 0.22, 4},
+                                             {normalized({0.05, -0.85, -0.45}), 0.22, 4},
+                                             {normalized({0, 0, 1}), 0.02, 2}}};
     double radius = 0.36;
     for (const Lobe& lobe : lobes) {
         double part = (1 + d.x * lobe.along.x + d.y * lobe.along.y + d.z * lobe.along.z) / 2;
@@ -111,7 +107,7 @@ Mesh drawn_out_sphere(const char* kind, std::uint32_t triangles, std::uint32_t l
         for (std::uint32_t i = 0; i < counts[k]; ++i) {
             ring.turn.push_back((i + 0.5 * (k % 2)) / counts[k]); // staggered rows
             const SineCosine longitude = sine_cosine(ring.turn.back());
-            add(unit({latitude.sine * longitude.cosine, latitude.sine * longitude.sine, -latitude.cosine}));
+            add(normalized({latitude.sine * longitude.cosine, latitude.sine * longitude.sine, -latitude.cosine}));
         }
     }
     const auto north = static_cast<std::uint32_t>(mesh.vertices.size());
@@ -249,8 +245,8 @@ Mesh knot(std::uint32_t triangles) {
     Vec3 up{1, 0, 0}; // carried along without twist, so that few-sided rings do not pinch; only the last band turns
     for (std::uint32_t k = 0; k < ring_count; ++k) {
         const Vec3 &before = path[(k + ring_count - 1) % ring_count], &after = path[(k + 1) % ring_count];
-        const Vec3 tangent = unit({after.x - before.x, after.y - before.y, after.z - before.z});
-        const Vec3 side = unit(cross(tangent, up));
+        const Vec3 tangent = normalized({after.x - before.x, after.y - before.y, after.z - before.z});
+        const Vec3 side = normalized(cross(tangent, up));
         up = cross(side, tangent);
         Ring& ring = rings.emplace_back();
         ring.first = static_cast<std::uint32_t>(mesh.vertices.size());

@@ -15,8 +15,11 @@ struct BroadPhaseInput {
     /// A body is in these groups, and meets those in its mask: both ways round.
     struct Filter {
         std::uint32_t groups = 1, mask = 0xffffffffu;
+        bool is_static = false; ///< it meets nothing that is static, too
         bool operator==(const Filter&) const = default;
-        bool lets_meet(const Filter& other) const { return (groups & other.mask) != 0 && (other.groups & mask) != 0; }
+        bool lets_meet(const Filter& other) const {
+            return (groups & other.mask) != 0 && (other.groups & mask) != 0 && !(is_static && other.is_static);
+        }
     };
     std::span<const Box> boxes; ///< no_box where there is no body
     std::span<const Filter> filters;

@@ -10,29 +10,6 @@
 
 namespace raycontact {
 
-inline Vec3 operator-(const Vec3& a, const Vec3& b) {
-    return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-inline Vec3 operator+(const Vec3& a, const Vec3& b) {
-    return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-inline Vec3 operator*(double s, const Vec3& a) {
-    return {s * a.x, s * a.y, s * a.z};
-}
-inline double dot(const Vec3& a, const Vec3& b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-inline Vec3 cross(const Vec3& a, const Vec3& b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-inline double length(const Vec3& a) {
-    return std::sqrt(dot(a, a));
-}
-/// Zero for a zero vector.
-inline Vec3 unit(const Vec3& a) {
-    const double size = length(a);
-    return size > 0 ? (1 / size) * a : Vec3{};
-}
 /// By a rotation, its rows one after the other; and by its transpose.
 inline Vec3 rotated(const std::array<double, 9>& r, const Vec3& a) {
     return {(r[0] * a.x + r[1] * a.y) + r[2] * a.z, (r[3] * a.x + r[4] * a.y) + r[5] * a.z,

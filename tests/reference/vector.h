@@ -8,32 +8,6 @@
 // Double-precision vectors for the reference alone: nothing here is shared with the library under test.
 namespace raycontact::reference {
 
-inline Vec3 operator+(const Vec3& a, const Vec3& b) {
-    return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-inline Vec3 operator-(const Vec3& a, const Vec3& b) {
-    return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-inline Vec3 operator-(const Vec3& a) {
-    return {-a.x, -a.y, -a.z};
-}
-inline Vec3 operator*(double s, const Vec3& a) {
-    return {s * a.x, s * a.y, s * a.z};
-}
-inline double dot(const Vec3& a, const Vec3& b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-inline Vec3 cross(const Vec3& a, const Vec3& b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-inline double length(const Vec3& a) {
-    return std::sqrt(dot(a, a));
-}
-/// Zero stays zero.
-inline Vec3 unit(const Vec3& a) {
-    const double l = length(a);
-    return l > 0 ? (1 / l) * a : Vec3{};
-}
 inline double component(const Vec3& a, int axis) {
     return axis == 0 ? a.x : axis == 1 ? a.y : a.z;
 }

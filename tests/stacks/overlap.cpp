@@ -12,14 +12,6 @@ Vec3 column_of(const Pose& pose, std::size_t k) {
     return {pose.rotation[k], pose.rotation[3 + k], pose.rotation[6 + k]};
 }
 
-double dot(const Vec3& a, const Vec3& b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-Vec3 cross(const Vec3& a, const Vec3& b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
 double half_width(const Vec3& size, const Pose& pose, const Vec3& axis) {
     return (size.x * std::fabs(dot(column_of(pose, 0), axis)) + size.y * std::fabs(dot(column_of(pose, 1), axis))
             + size.z * std::fabs(dot(column_of(pose, 2), axis)))

@@ -24,18 +24,6 @@ constexpr std::uint32_t sides = 64;      ///< of a cylinder and a cone: facets w
 constexpr std::uint32_t ball_parts = 10; ///< of each edge of the icosahedron: 1002 points, within 1.5e-3 of the radius
 constexpr double pi = 3.14159265358979323846;
 
-double dot(const Vec3& a, const Vec3& b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-Vec3 minus(const Vec3& a, const Vec3& b) {
-    return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-
-Vec3 cross(const Vec3& a, const Vec3& b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-
 /// A ring of points about the z axis. Corners and the middles of chords are equally far off the circle.
 void add_ring(Mesh& mesh, double radius, double z) {
     const double corner = radius * 2 / (1 + std::cos(pi / sides));
@@ -131,7 +119,7 @@ std::vector<Vec3> make_ball() {
             return Vec3{p.x / length, p.y / length, p.z / length};
         };
         const auto facet = [&](const Vec3& p, const Vec3& q, const Vec3& r) {
-            const Vec3 n = cross(minus(q, p), minus(r, p));
+            const Vec3 n = cross(q - p, r - p);
             nearest = std::min(nearest, std::fabs(dot(n, p)) / std::sqrt(dot(n, n)));
         };
         for (std::uint32_t i = 0; i <= ball_parts; ++i) {
@@ -168,7 +156,7 @@ Mesh hull(const std::vector<Vec3>& points) {
         for (auto& t : mesh.triangles) std::swap(t[1], t[2]);
     double size = 0;
     for (const Vec3& v : mesh.vertices) {
-        const Vec3 across = minus(v, mesh.vertices[0]);
+        const Vec3 across = v - mesh.vertices[0];
         size = std::max(size, dot(across, across));
     }
     if (!(std::fabs(volume) > 1e-6 * std::pow(size, 1.5))) return {};

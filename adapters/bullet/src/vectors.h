@@ -22,31 +22,6 @@ inline double dot_in_double(const btVector3& a, const btVector3& b) {
     return double(a.x()) * double(b.x()) + double(a.y()) * double(b.y()) + double(a.z()) * double(b.z());
 }
 
-inline Vec3 operator+(const Vec3& a, const Vec3& b) {
-    return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-inline Vec3 operator-(const Vec3& a, const Vec3& b) {
-    return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-inline Vec3 operator-(const Vec3& a) {
-    return {-a.x, -a.y, -a.z};
-}
-inline Vec3 operator*(double s, const Vec3& a) {
-    return {s * a.x, s * a.y, s * a.z};
-}
-inline double dot(const Vec3& a, const Vec3& b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-inline Vec3 cross(const Vec3& a, const Vec3& b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
-inline double length2(const Vec3& a) {
-    return dot(a, a);
-}
-inline double length(const Vec3& a) {
-    return std::sqrt(length2(a));
-}
-
 /// A direction, from the body frame into the world and back.
 inline Vec3 turned(const Pose& pose, const Vec3& v) {
     const auto& r = pose.rotation;

@@ -18,12 +18,6 @@ Vec3 minus(const Vec3& a, const Vec3& b) {
 Vec3 along(const Vec3& from, double t, const Vec3& way) {
     return {from.x + t * way.x, from.y + t * way.y, from.z + t * way.z};
 }
-double dot(const Vec3& a, const Vec3& b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-Vec3 cross(const Vec3& a, const Vec3& b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
 double norm(const Vec3& a) {
     return std::sqrt(dot(a, a));
 }

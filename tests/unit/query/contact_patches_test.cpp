@@ -24,9 +24,6 @@ namespace {
 
 constexpr double pi = 3.14159265358979323846;
 
-double dot(const Vec3& a, const Vec3& b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
 Vec3 plus(const Vec3& a, double s, const Vec3& b) {
     return {a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
 }

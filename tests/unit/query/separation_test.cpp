@@ -22,12 +22,6 @@ using ShapePtr = std::shared_ptr<const Shape>;
 Vec3 sum(const Vec3& a, double s, const Vec3& b) {
     return {a.x + s * b.x, a.y + s * b.y, a.z + s * b.z};
 }
-double dot(const Vec3& a, const Vec3& b) {
-    return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-Vec3 cross(const Vec3& a, const Vec3& b) {
-    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
 Pose at(const Vec3& place) {
     return {.translation = place};
 }
