@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "body_slots.h"
 
+#include "state_bytes.h"
+
 #include <raycontact/error.h>
 
 #include <algorithm>
@@ -56,6 +58,28 @@ void BodySlots::step_done() noexcept {
     for (const BodySlot slot : leaving_) make_free(slot);
     leaving_.clear();
     shorten();
+}
+
+void BodySlots::save(std::vector<std::byte>& bytes) const {
+    put_bytes(bytes, first_generation_);
+    put_bytes(bytes, steps_);
+    put_list<Slot>(bytes, slots_);
+    put_list<BodySlot>(bytes, free_);
+    put_list<BodySlot>(bytes, leaving_);
+    put_bytes(bytes, end_);
+    put_bytes(bytes, count_);
+}
+
+void BodySlots::load(std::span<const std::byte>& bytes) {
+    first_generation_ = take_bytes<std::uint32_t>(bytes);
+    steps_ = take_bytes<std::uint64_t>(bytes);
+    slots_ = take_list<Slot>(bytes);
+    free_ = take_list<BodySlot>(bytes);
+    leaving_ = take_list<BodySlot>(bytes);
+    end_ = take_bytes<BodySlot>(bytes);
+    count_ = take_bytes<std::uint32_t>(bytes);
+    free_.reserve(slots_.capacity());
+    leaving_.reserve(slots_.capacity());
 }
 
 void BodySlots::make_free(BodySlot slot) noexcept {

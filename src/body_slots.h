@@ -6,7 +6,9 @@
 #include <raycontact/body_id.h>
 #include <raycontact/export.h>
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace raycontact {
@@ -28,6 +30,9 @@ public:
     /// A step has seen the bodies that are there, and which slots have none. One that fails has seen nothing: it leaves
     /// nothing behind.
     void step_done() noexcept;
+
+    void save(std::vector<std::byte>& bytes) const;
+    void load(std::span<const std::byte>& bytes);
 
     bool is_there(BodyId body) const {
         const BodySlot slot = body.slot;

@@ -15,8 +15,12 @@ kernels::BodyExtent extent_of(const PlacedBody& body, double growth, const Broad
                               BodySlot slot) {
     const Box own{body.shape->box_min(), body.shape->box_max()};
     const Vec3 middle = own.middle(), half = 0.5 * (own.high - own.low) + Vec3{growth, growth, growth};
-    return {{middle.x, middle.y, middle.z}, {half.x, half.y, half.z}, filter.groups,
-            filter.mask, filter.is_static ? IS_THERE | IS_STATIC : IS_THERE, slot};
+    return {{middle.x, middle.y, middle.z},
+            {half.x, half.y, half.z},
+            filter.groups,
+            filter.mask,
+            filter.is_static ? IS_THERE | IS_STATIC : IS_THERE,
+            slot};
 }
 
 } // namespace

@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <chrono>
 #include <exception>
+#include <iterator>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -79,7 +80,9 @@ void NarrowPhase::begin_anew() noexcept {
 void NarrowPhase::forget_contacts() noexcept {
     contacts_.clear();
     left_out_.clear();
+    sensed_.clear();
     seen_ = 0;
+    is_loaded_ = false;
 }
 
 // Where most bodies move, hardly a pair has what it had. A number of contacts that all pairs share is given to all
@@ -124,14 +127,17 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, const SlotChanges& mo
         while (!failed.empty()) failed = replace(failed, stats);
         std::vector<Contact>& found = merge();
         Executor& executor = parts_.executor(); // of a part that is left
+        take_sensed(bodies, found);
         face_contacts_.run(executor, settings_, bodies, found);
-        const ContactStore::Asked asked{!few_, asked_.pairs, pairs.closed()};
-        reducer_.run(executor, settings_, bodies, {contacts_, left_out_, moved.is_next(seen_)}, found);
+        const ContactStore::Asked asked = this->asked(pairs);
+        reducer_.run(executor, settings_, bodies, {contacts_, left_out_, moved.is_next(seen_) || is_loaded_}, found);
         if (settings_.direction == Direction::refined) refine(executor, bodies, found);
         contacts_.replace(executor, asked, found);
         if (!left_out_.all().empty() || !reducer_.left_out().empty())
             left_out_.replace(executor, asked, reducer_.left_out());
+        if (!sensed_.all().empty() || !of_sensors_.empty()) sensed_.replace(executor, asked, of_sensors_);
         seen_ = moved.now();
+        is_loaded_ = false;
     } catch (...) {
         const Interruptible to_its_end(nullptr);
         begin_anew();
@@ -185,6 +191,7 @@ void NarrowPhase::trim(std::uint64_t pair_bytes) {
     reducer_.trim();
     contacts_.trim();
     left_out_.trim();
+    sensed_.trim();
     platform::trim_heap();
 }
 
@@ -281,6 +288,57 @@ bool NarrowPhase::move_pairs(const Balance::Move& move, std::span<const PlacedBo
     return failed.empty() && moving.size() > 0;
 }
 
+SavedContacts NarrowPhase::save_contacts() const {
+    const auto copy_of = [](std::span<const Contact> contacts) {
+        return std::vector<Contact>(contacts.begin(), contacts.end());
+    };
+    return {copy_of(contacts_.all()), copy_of(left_out_.all()), copy_of(sensed_.all())};
+}
+
+std::vector<SavedRays> NarrowPhase::save_rays(std::span<const PlacedBody> bodies) {
+    std::vector<SavedRays> saved;
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+        if (!has_pairs(i)) continue;
+        const PairList own = assignment_.all_on(i);
+        std::vector<std::byte> state = parts_[i].export_state(bodies, own);
+        if (!state.empty()) saved.push_back({own.pairs, std::move(state)});
+    }
+    return saved;
+}
+
+// All pairs begin on one part, since any has taken over rays from any other.
+void NarrowPhase::load(std::span<const PlacedBody> bodies, const SlotChanges& moved, const OpenPairs& pairs,
+                       SavedContacts contacts, std::span<const SavedRays> rays) {
+    Executor& executor = parts_.executor();
+    parts_.forget();
+    assignment_.forget();
+    contacts_.restore(executor, std::move(contacts.kept));
+    left_out_.restore(executor, std::move(contacts.left_out));
+    sensed_.restore(executor, std::move(contacts.sensed));
+    seen_ = 0;
+    is_loaded_ = true;
+    if (rays.empty()) return;
+    assignment_.assign(pairs, balance_);
+    const std::size_t to = first_part();
+    for (std::size_t i = 0; i < parts_.size(); ++i) {
+        if (i == to || !parts_.has(i)) continue;
+        PairList moving = assignment_.all_on(i);
+        if (moving.size() > 0) assignment_.move(moving, i, to);
+    }
+    const PairList all = assignment_.all_on(to);
+    Part& part = parts_[to];
+    part.learn(bodies, moved);
+    for (const SavedRays& own : rays) {
+        PairList list;
+        for (const SlotPair& pair : own.pairs) {
+            const auto at = std::ranges::lower_bound(all.pairs, pair) - all.pairs.begin();
+            list.pairs.push_back(pair);
+            list.slots.push_back(all.slots[std::size_t(at)]);
+        }
+        part.import_state(bodies, list, own.state);
+    }
+}
+
 std::vector<KeptRay> NarrowPhase::kept_rays(std::span<const PlacedBody> bodies) {
     std::vector<KeptRay> rays;
     for (std::size_t i = 0; i < parts_.size(); ++i)
@@ -316,6 +374,16 @@ std::vector<Contact>& NarrowPhase::merge() {
         });
     }
     return merged_;
+}
+
+void NarrowPhase::take_sensed(std::span<const PlacedBody> bodies, std::vector<Contact>& found) {
+    of_sensors_.clear();
+    if (sensor_count_ == 0) return;
+    const auto is_sensed = [&](const Contact& contact) {
+        return bodies[contact.body_a.slot].is_sensor || bodies[contact.body_b.slot].is_sensor;
+    };
+    std::ranges::copy_if(found, std::back_inserter(of_sensors_), is_sensed);
+    std::erase_if(found, is_sensed);
 }
 
 void NarrowPhase::count(std::size_t pair_count, StepStats& stats) {

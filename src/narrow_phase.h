@@ -13,6 +13,16 @@
 
 namespace raycontact {
 
+/// All contacts of a step.
+struct SavedContacts {
+    std::vector<Contact> kept, left_out, sensed;
+};
+/// What a part keeps of its pairs.
+struct SavedRays {
+    std::vector<SlotPair> pairs; ///< sorted
+    std::vector<std::byte> state;
+};
+
 /// The narrow phase, one step at a time.
 class NarrowPhase {
 public:
@@ -41,6 +51,7 @@ public:
     void prepare() {
         contacts_.prepare();
         left_out_.prepare();
+        sensed_.prepare();
     }
     /// A step that failed has no contacts. Its pairs begin anew.
     void begin_anew() noexcept;
@@ -53,12 +64,24 @@ public:
               double broad_ms = 0);
     /// A step in which nothing has moved since the last, for a method that then finds what it found: contacts stay.
     void rest(StepStats& stats);
+    /// Between two steps; bodies as in the last one.
+    SavedContacts save_contacts() const;
+    std::vector<SavedRays> save_rays(std::span<const PlacedBody> bodies);
+    /// Before a step, of pairs that are all new to it. moved: all bodies; PlacedBody::centred: of the step before.
+    void load(std::span<const PlacedBody> bodies, const SlotChanges& moved, const OpenPairs& pairs,
+              SavedContacts contacts, std::span<const SavedRays> rays);
     /// The rays that the methods keep for the next step, in any order; bodies as in the last step.
     std::vector<KeptRay> kept_rays(std::span<const PlacedBody> bodies);
     /// Whether the last step freed memory, since much less of it is in use than was.
     bool trimmed() const { return trimmed_; }
     /// Contacts of the last step that the settings leave out.
     std::span<const Contact> left_out() const { return left_out_.all(); }
+    /// How many bodies are sensors.
+    void set_sensor_count(std::size_t count) { sensor_count_ = count; }
+    /// Those of pairs with a sensor.
+    const ContactStore& sensed() const { return sensed_; }
+    /// Whose contacts the last step asked about. pairs: its own, before OpenPairs::step_done().
+    ContactStore::Asked asked(OpenPairs& pairs) const { return {!few_, asked_.pairs, pairs.closed()}; }
 
 private:
     /// What a part found in a step.
@@ -77,6 +100,7 @@ private:
     std::vector<std::size_t> replace(const std::vector<std::size_t>& failed, StepStats& stats);
     std::vector<PairList> give_away(const std::vector<std::size_t>& failed, StepStats& stats);
     std::vector<Contact>& merge();
+    void take_sensed(std::span<const PlacedBody> bodies, std::vector<Contact>& found);
     void count(std::size_t pair_count, StepStats& stats);
     void trim(std::uint64_t pair_bytes);
 
@@ -90,11 +114,14 @@ private:
     std::vector<Found> found_; ///< by part; without contacts once it is dropped
     std::vector<Contact> merged_;
     SlotChanges::Seen seen_ = 0; ///< the last step: SlotChanges of bodies
+    bool is_loaded_ = false;     ///< since then: contacts are those of the step before
     bool few_ = false;           ///< only pairs that may have changed are asked about
     PairList asked_;             ///< those
     FaceContacts face_contacts_;
     ContactReducer reducer_;
-    ContactStore contacts_, left_out_;
+    ContactStore contacts_, left_out_, sensed_;
+    std::vector<Contact> of_sensors_;
+    std::size_t sensor_count_ = 0;
     std::uint64_t most_bytes_ = 0; ///< StepStats::pair_bytes, the most since memory was last trimmed
     unsigned trims_ = 0;           ///< still to be done, one a step
     bool trimmed_ = false;         ///< in the last step

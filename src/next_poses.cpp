@@ -3,6 +3,7 @@
 
 #include "mesh/vector.h"
 #include "shape/shape_data.h"
+#include "state_bytes.h"
 
 namespace raycontact {
 
@@ -66,6 +67,17 @@ void NextPoses::step_done(Executor& executor, std::span<const PlacedBody> bodies
 void NextPoses::forget() {
     given_.clear();
     last_.clear();
+    next_.clear();
+}
+
+void NextPoses::save(std::vector<std::byte>& bytes) const {
+    put_list<Known>(bytes, given_);
+    put_list<Known>(bytes, last_);
+}
+
+void NextPoses::load(std::span<const std::byte>& bytes) {
+    given_ = take_list<Known>(bytes);
+    last_ = take_list<Known>(bytes);
     next_.clear();
 }
 

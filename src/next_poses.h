@@ -4,6 +4,7 @@
 #include "pairs/directed_pairs.h"
 #include "slot_changes.h"
 
+#include <cstddef>
 #include <span>
 #include <vector>
 
@@ -21,6 +22,8 @@ public:
     /// Last in a step.
     void step_done(Executor& executor, std::span<const PlacedBody> bodies);
     void forget();
+    void save(std::vector<std::byte>& bytes) const;
+    void load(std::span<const std::byte>& bytes);
 
 private:
     struct Known {

@@ -31,6 +31,7 @@ public:
     /// A body is gone, its pairs are closed.
     void remove_body(BodySlot body, const Shape& shape);
     void set_filter(BodySlot body, const BroadPhaseInput::Filter& filter);
+    const BroadPhaseInput::Filter& filter(BodySlot body) const { return filters_[body]; }
 
     /// next: where bodies are expected, by slot; empty: nowhere.
     void find(NarrowPhase& narrow, std::span<const PlacedBody> bodies, std::span<const Pose> next, OpenPairs& pairs);

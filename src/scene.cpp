@@ -4,6 +4,7 @@
 #include "body_slots.h"
 #include "contacts/column_writer.h"
 #include "contacts/predictions.h"
+#include "contacts/touches.h"
 #include "executor/float_environment.h"
 #include "free_all.h"
 #include "interruption.h"
@@ -12,6 +13,7 @@
 #include "pair_finder.h"
 #include "pose_fault.h"
 #include "read_poses.h"
+#include "saved_scene.h"
 #include "shape/preparer.h"
 #include "shape/shape_data.h"
 #include "slot_changes.h"
@@ -25,6 +27,9 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
 
 namespace raycontact {
 
@@ -76,6 +81,11 @@ struct Scene::State {
     /// Wakes the threads, which sleep between steps; for few pairs one thread is enough.
     void call_threads(std::size_t pair_count) {
         if (pair_count > 256) narrow.wake();
+    }
+
+    void set_sensor(PlacedBody& body, bool is_sensor) {
+        if (std::exchange(body.is_sensor, is_sensor) == is_sensor) return;
+        narrow.set_sensor_count(sensors += is_sensor ? 1 : -1);
     }
 
     void mark(BodySlot slot) noexcept {
@@ -197,7 +207,7 @@ struct Scene::State {
 
     void set_pairs() {
         finder.drop_list();
-        pairs.set_all(narrow.parts().executor(), given_pairs);
+        pairs.set_all(narrow.parts().executor(), given_pairs, true);
         given_stand = true;
     }
 
@@ -217,6 +227,7 @@ struct Scene::State {
             const Interruptible to_its_end(nullptr);
             narrow.begin_anew();
             finder.trim();
+            touches.rest();
             drop_pairs();
             throw;
         }
@@ -253,6 +264,7 @@ struct Scene::State {
     void rest(double broad_ms) {
         const Interruptible to_its_end(nullptr);
         narrow.rest(stats);
+        touches.rest();
         stats.broad_ms = broad_ms;
         end_step();
     }
@@ -261,12 +273,98 @@ struct Scene::State {
         place_bodies();
         narrow.step(bodies, moved, pairs, stats, broad_ms);
         const Interruptible to_its_end(nullptr); // it has contacts
+        update_touches();
         end_step();
         stepped = moved.step_done();
         want_shapes();
         pairs.step_done();
         cut_to_slots();
         if (narrow.trimmed()) trim();
+    }
+
+    void update_touches() {
+        const auto is_kept_apart = [&](const SlotPair& pair) {
+            return !finder.filter(pair.first).lets_touch(finder.filter(pair.second)) || pairs.is_refused(pair);
+        };
+        touches.update(narrow.parts().executor(),
+                       {bodies, next, moved, narrow.contacts(), narrow.sensed(), narrow.asked(pairs), is_kept_apart});
+    }
+
+    std::vector<std::shared_ptr<const Shape>> list_shapes() const {
+        std::vector<std::shared_ptr<const Shape>> list;
+        std::unordered_set<const Shape*> listed;
+        for (const PlacedBody& body : bodies)
+            if (body.shape != nullptr && listed.insert(body.shape).second)
+                list.push_back(body.shape->shared_from_this());
+        return list;
+    }
+
+    SavedScene save(std::span<const std::shared_ptr<const Shape>> shapes) {
+        SavedScene saved;
+        std::unordered_map<const Shape*, std::uint32_t> places;
+        for (const auto& shape : shapes) places.emplace(shape.get(), static_cast<std::uint32_t>(places.size()));
+        for (BodySlot slot = 0; slot < bodies.size(); ++slot) {
+            const PlacedBody& body = bodies[slot];
+            if (body.shape == nullptr) continue;
+            const BroadPhaseInput::Filter& filter = finder.filter(slot);
+            saved.bodies.push_back({slot, places.at(body.shape), body.pose, body.centred, body.margin, user_data[slot],
+                                    filter.groups, filter.mask, filter.is_static, body.is_sensor});
+        }
+        saved.slots = slots;
+        saved.next_poses = next_poses;
+        saved.pairs = pairs.all(narrow.parts().executor()).pairs;
+        saved.contacts = narrow.save_contacts();
+        saved.touches.assign(touches.all().begin(), touches.all().end());
+        if (follows_rays(narrow.settings().method)) saved.rays = narrow.save_rays(bodies);
+        return saved;
+    }
+
+    /// Of a scene without bodies.
+    void load(const SavedScene& saved, std::span<const std::shared_ptr<const Shape>> shapes) {
+        BodySlots taken = saved.slots;
+        const std::size_t room = taken.end();
+        bodies.assign(room, {});
+        user_data.assign(room, 0);
+        moved.make_room(room);
+        finder.make_room(room);
+        for (const SavedBody& body : saved.bodies) {
+            const std::shared_ptr<const Shape>& shape = shapes[body.shape];
+            narrow.parts().add_shape(shape);
+            finder.add_shape(*shape);
+            PlacedBody& own = bodies[body.slot];
+            own = {shape.get(),
+                   narrow.parts().index_of(shape.get()),
+                   taken.id_in(body.slot).generation,
+                   body.pose,
+                   body.centred,
+                   body.centred,
+                   body.margin};
+            set_sensor(own, body.is_sensor != 0);
+            user_data[body.slot] = body.user_data;
+            finder.set_filter(body.slot, {body.groups, body.mask, body.is_static != 0});
+        }
+        pack_shapes();
+        if (follows_rays(narrow.settings().method)) accelerate_shapes();
+        next_poses = saved.next_poses;
+        pairs.set_all(narrow.parts().executor(), saved.pairs, true);
+        narrow.load(bodies, moved, pairs, saved.contacts, saved.rays);
+        touches.restore(saved.touches);
+        forget_moves();
+        slots = std::move(taken);
+    }
+    /// After a load() that failed, which has given no ids.
+    void drop_loaded() noexcept {
+        for (BodySlot slot = 0; slot < bodies.size(); ++slot) {
+            PlacedBody& body = bodies[slot];
+            if (body.shape == nullptr) continue;
+            finder.remove_body(slot, *body.shape);
+            narrow.parts().remove_shape(body.shape);
+            body = {};
+        }
+        narrow.set_sensor_count(sensors = 0);
+        narrow.begin_anew();
+        touches.restore({});
+        drop_pairs();
     }
 
     void trim() {
@@ -307,6 +405,8 @@ struct Scene::State {
     std::vector<SlotPair> given_pairs, sorted;
     PairSorter<SlotPair> sorter;
     ContactColumnWriter columns;
+    Touches touches;
+    std::size_t sensors = 0; ///< bodies
     StepStats stats;
     std::map<std::weak_ptr<const Shape>, bool, std::owner_less<>> met_shapes; ///< not prepared; whether it is wanted
     Preparer preparer;                                                        ///< last: it ends first
@@ -345,6 +445,7 @@ void Scene::remove(BodyId body) {
     State& s = *state_;
     PlacedBody& gone = s.existing(body, "Scene::remove");
     s.finder.remove_body(body.slot, *gone.shape);
+    s.set_sensor(gone, false);
     s.narrow.parts().remove_shape(gone.shape);
     gone.shape = nullptr;
     s.mark(body.slot);
@@ -434,7 +535,35 @@ std::uint64_t Scene::user_data(BodyId body) const {
 }
 void Scene::set_filter(BodyId body, std::uint32_t groups, std::uint32_t mask) {
     state_->existing(body, "Scene::set_filter");
-    state_->finder.set_filter(body.slot, {groups, mask});
+    state_->finder.set_filter(body.slot, {groups, mask, state_->finder.filter(body.slot).is_static});
+}
+void Scene::set_static(BodyId body, bool is_static) {
+    state_->existing(body, "Scene::set_static");
+    const BroadPhaseInput::Filter& filter = state_->finder.filter(body.slot);
+    state_->finder.set_filter(body.slot, {filter.groups, filter.mask, is_static});
+}
+bool Scene::is_static(BodyId body) const {
+    state_->existing(body, "Scene::is_static");
+    return state_->finder.filter(body.slot).is_static;
+}
+void Scene::set_sensor(BodyId body, bool is_sensor) {
+    PlacedBody& own = state_->existing(body, "Scene::set_sensor");
+    if (own.is_sensor == is_sensor) return;
+    state_->set_sensor(own, is_sensor);
+    state_->mark(body.slot);
+}
+bool Scene::is_sensor(BodyId body) const {
+    return state_->existing(body, "Scene::is_sensor").is_sensor;
+}
+void Scene::set_pair_filter(std::function<bool(BodyId, BodyId)> filter) {
+    State& s = *state_;
+    OpenPairs::Admits admits;
+    if (filter)
+        admits = [&slots = s.slots, filter = std::move(filter)](const SlotPair& pair) {
+            return filter(slots.id_in(pair.first), slots.id_in(pair.second));
+        };
+    s.pairs.set_gate(std::move(admits));
+    s.finder.drop_list();
 }
 
 bool Scene::has(BodyId body) const noexcept {
@@ -443,6 +572,10 @@ bool Scene::has(BodyId body) const noexcept {
 
 std::uint32_t Scene::body_count() const noexcept {
     return state_->slots.count();
+}
+
+void Scene::clear() {
+    for (const BodyId body : bodies()) remove(body);
 }
 
 std::vector<BodyId> Scene::bodies() const {
@@ -461,6 +594,7 @@ void Scene::prepare() {
 void Scene::forget_contacts() {
     state_->narrow.prepare();
     state_->narrow.forget_contacts();
+    state_->touches.restore({});
     state_->stepped = 0;
 }
 
@@ -502,6 +636,38 @@ std::size_t Scene::write_contacts(std::span<const ContactOutput> columns) {
 }
 std::span<const LostContact> Scene::lost_contacts() const noexcept {
     return state_->narrow.contacts().lost();
+}
+std::vector<std::shared_ptr<const Shape>> Scene::shapes() const {
+    return state_->list_shapes();
+}
+std::vector<std::byte> Scene::save_state() const {
+    const auto shapes = state_->list_shapes();
+    return state_->save(shapes).encode(settings(), shapes);
+}
+void Scene::load_state(std::span<const std::byte> state, std::span<const std::shared_ptr<const Shape>> shapes) {
+    State& s = *state_;
+    const SavedScene saved = SavedScene::decode(state, settings(), shapes);
+    clear();
+    s.drop_pairs();
+    s.narrow.prepare();
+    s.narrow.forget_contacts();
+    s.touches.restore({});
+    s.stats = {};
+    try {
+        s.load(saved, shapes);
+    } catch (...) {
+        s.drop_loaded();
+        throw;
+    }
+}
+std::span<const Touch> Scene::begun() const noexcept {
+    return state_->touches.begun();
+}
+std::span<const Touch> Scene::ended() const noexcept {
+    return state_->touches.ended();
+}
+std::span<const Touch> Scene::touching() const noexcept {
+    return state_->touches.all();
 }
 const StepStats& Scene::stats() const noexcept {
     return state_->stats;

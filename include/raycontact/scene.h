@@ -43,11 +43,11 @@ struct BodyImpact : Impact {
 
 /// Two bodies that touch, or no longer do.
 struct Touch {
-    BodyId body_a;     ///< has the lower slot
-    BodyId body_b;     ///< has the higher slot
-    Vec3 point;        ///< between the witness points of the deepest contact of the last step that had any, world frame
-    Vec3f normal;      ///< that contact's
-    float depth = 0;   ///< that contact's
+    BodyId body_a;   ///< has the lower slot
+    BodyId body_b;   ///< has the higher slot
+    Vec3 point;      ///< between the witness points of the deepest contact of the last step that had any, world frame
+    Vec3f normal;    ///< that contact's
+    float depth = 0; ///< that contact's
     bool sensor = false; ///< one of them is a sensor: it has no contacts
 };
 
@@ -112,9 +112,9 @@ public:
     /// As set_sensor() has it.
     bool is_sensor(BodyId body) const;
     /// Asked about each pair that would come into being, as its boxes begin to touch, on the thread of the step: false
-    /// keeps the two apart. The first body has the lower slot. It is asked again about a pair that it keeps apart when
-    /// one of the two moves, and about all pairs after it was set. It must not change the scene; what it throws, the
-    /// step throws. Empty: none.
+    /// keeps the two apart until their boxes have parted, and true lets them be a pair until then. The first body has
+    /// the lower slot; pairs come in order. After it was set it is asked about all pairs anew. It must not change the
+    /// scene; what it throws, the step throws. Empty: none.
     /// find_contacts(pairs) tests every pair that it is given.
     void set_pair_filter(std::function<bool(BodyId, BodyId)> filter);
     /// It was added here and not removed.
@@ -159,8 +159,8 @@ public:
     std::span<const Contact> contacts(BodyId a, BodyId b) const;
     /// What touched in the last step and does not in this one, in the same order; `Contact::is_new` marks the new ones.
     std::span<const LostContact> lost_contacts() const noexcept;
-    /// Pairs of bodies that touch since the last step, those of sensors, too; by slots. Two bodies begin to touch with a
-    /// contact that touches, or with a speculative one that will, if both go on to where they are expected
+    /// Pairs of bodies that touch since the last step, those of sensors, too; by slots. Two bodies begin to touch with
+    /// a contact that touches, or with a speculative one that will, if both go on to where they are expected
     /// (set_next_pose()). They end when they have no contact that touches and are farther apart than speculative_share
     /// of the smaller body's box diagonal. So a body that rests, and trembles, touches all the time.
     std::span<const Touch> begun() const noexcept;
@@ -168,7 +168,8 @@ public:
     std::span<const Touch> ended() const noexcept;
     /// All pairs that touch; by slots.
     std::span<const Touch> touching() const noexcept;
-    /// Removes all bodies, as remove() does: touches of theirs are told as ended by the next step. No id is given again.
+    /// Removes all bodies, as remove() does: touches of theirs are told as ended by the next step. No id is given
+    /// again.
     void clear();
 
     /// All that later steps depend on, but for meshes, settings and the pair filter: bodies with ids, poses, filters

@@ -17,9 +17,8 @@ struct BroadPhaseInput {
         std::uint32_t groups = 1, mask = 0xffffffffu;
         bool is_static = false; ///< it meets nothing that is static, too
         bool operator==(const Filter&) const = default;
-        bool lets_meet(const Filter& other) const {
-            return (groups & other.mask) != 0 && (other.groups & mask) != 0 && !(is_static && other.is_static);
-        }
+        bool lets_meet(const Filter& other) const { return lets_touch(other) && !(is_static && other.is_static); }
+        bool lets_touch(const Filter& other) const { return (groups & other.mask) != 0 && (other.groups & mask) != 0; }
     };
     std::span<const Box> boxes; ///< no_box where there is no body
     std::span<const Filter> filters;

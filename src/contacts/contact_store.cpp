@@ -153,9 +153,7 @@ void ContactStore::replace_all(Executor& executor, std::vector<Contact>& found) 
         });
     found.swap(*next_);
     contacts_.swap(next_);
-    maybe_new_.assign(1, {0, contacts_->size()});
-    blocks_.resize((contacts_->size() + block_size - 1) / block_size);
-    executor.each(blocks_.size(), 16, [&](std::uint32_t block) { fill(block, *contacts_); });
+    fill_all(executor);
     sums_.fresh = 0;
     for (const Slice& slice : slices) {
         sums_.fresh += slice.fresh;
@@ -298,6 +296,21 @@ void ContactStore::rest(Executor& executor) {
     }
     sums_.fresh = 0;
     lost_.clear();
+}
+
+void ContactStore::restore(Executor& executor, std::vector<Contact> contacts) {
+    contacts_ = std::make_shared<std::vector<Contact>>(std::move(contacts));
+    lost_.clear();
+    fill_all(executor);
+    sum_up();
+    sums_.fresh = static_cast<std::uint64_t>(
+        std::ranges::count_if(*contacts_, [](const Contact& c) { return c.is_new && !c.is_speculative(); }));
+}
+
+void ContactStore::fill_all(Executor& executor) {
+    maybe_new_.assign(1, {0, contacts_->size()});
+    blocks_.resize((contacts_->size() + block_size - 1) / block_size);
+    executor.each(blocks_.size(), 16, [&](std::uint32_t block) { fill(block, *contacts_); });
 }
 
 void ContactStore::fill(std::size_t block, std::span<const Contact> contacts) {

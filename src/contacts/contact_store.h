@@ -46,6 +46,8 @@ public:
     void rest(Executor& executor);
     /// After prepare().
     void clear() noexcept;
+    /// Puts back what all() was.
+    void restore(Executor& executor, std::vector<Contact> contacts);
     void trim();
 
 private:
@@ -79,6 +81,7 @@ private:
     void replace_units(Executor& executor, const std::vector<Contact>& found);
     void move_units(Executor& executor, const std::vector<Contact>& found);
     void forget_new(Executor& executor);
+    void fill_all(Executor& executor);
     void fill(std::size_t block, std::span<const Contact> contacts);
     void sum_up();
 

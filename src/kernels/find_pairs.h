@@ -176,8 +176,7 @@ DEVICE uint are_pair(READS(WorldBox) a, READS(WorldBox) b) {
     const uint x = (a->low[0] <= b->high[0]) & (b->low[0] <= a->high[0]);
     const uint y = (a->low[1] <= b->high[1]) & (b->low[1] <= a->high[1]);
     const uint z = (a->low[2] <= b->high[2]) & (b->low[2] <= a->high[2]);
-    const uint meet =
-        ((a->groups & b->mask) != 0u) & ((b->groups & a->mask) != 0u) & ((a->moves | b->moves) != 0u);
+    const uint meet = ((a->groups & b->mask) != 0u) & ((b->groups & a->mask) != 0u) & ((a->moves | b->moves) != 0u);
     return x & y & z & meet;
 }
 

@@ -23,6 +23,7 @@ struct PlacedBody {
     Pose centred;                  ///< of the frame about the shape's centre, in which the kernels work
     Pose next{};                   ///< of that frame, where it is expected at the next step; with speculative contacts
     double margin = -1;            ///< of its own for speculative contacts, metres; negative: none
+    bool is_sensor = false;        ///< its contacts are not the scene's
 };
 
 /// Bits, not values: 0 and -0 are one place, but not one contact.

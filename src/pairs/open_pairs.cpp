@@ -8,6 +8,7 @@
 #include <raycontact/error.h>
 
 #include <algorithm>
+#include <iterator>
 
 namespace raycontact {
 
@@ -18,11 +19,42 @@ constexpr std::size_t bodies_at_once = 64;
 
 } // namespace
 
-void OpenPairs::set_all(Executor& executor, std::span<const SlotPair> pairs) {
+void OpenPairs::set_gate(Admits admits) {
+    admits_ = std::move(admits);
+    refused_.clear();
+    asks_all_ = true;
+}
+
+void OpenPairs::set_all(Executor& executor, std::span<const SlotPair> pairs, bool given) {
     all(executor);
     has_all_ = false; // until the list is whole again
+    if (!given) pairs = admitted(all_.pairs, pairs, [](const SlotPair&) { return true; });
+    asks_all_ = given; // nobody was asked about those
     replace(executor, all_, pairs);
     has_all_ = true;
+}
+
+// Those of `now` that were open, and those that the gate lets in. What it refused and concerns these bodies is
+// forgotten where it is not among them.
+template <class Concerns>
+std::span<const SlotPair> OpenPairs::admitted(std::span<const SlotPair> old, std::span<const SlotPair> now,
+                                              Concerns&& concerns) {
+    if (!admits_) return now;
+    admitted_.clear();
+    still_refused_.clear();
+    std::ranges::copy_if(refused_, std::back_inserter(still_refused_),
+                         [&](const SlotPair& pair) { return !concerns(pair); });
+    const auto before = static_cast<std::ptrdiff_t>(still_refused_.size());
+    auto open = old.begin();
+    for (const SlotPair& pair : now) {
+        while (open != old.end() && *open < pair) ++open;
+        const bool was_open = open != old.end() && *open == pair;
+        const bool comes_in = !is_refused(pair) && ((was_open && !asks_all_) || admits_(pair));
+        (comes_in ? admitted_ : still_refused_).push_back(pair);
+    }
+    std::ranges::inplace_merge(still_refused_, still_refused_.begin() + before);
+    refused_.swap(still_refused_);
+    return admitted_;
 }
 
 void OpenPairs::set_of(Executor& executor, std::span<const BodySlot> bodies, std::span<const char> is_in,
@@ -31,14 +63,18 @@ void OpenPairs::set_of(Executor& executor, std::span<const BodySlot> bodies, std
         executor, bodies.size(), [&](std::size_t i) { return bodies[i]; },
         [&](BodySlot body) { return is_in[body] != 0; });
     list_found(executor, of_bodies_);
-    if (replace(executor, of_bodies_, pairs)) has_all_ = false;
+    const auto concerns = [&](const SlotPair& pair) { return is_in[pair.first] != 0 || is_in[pair.second] != 0; };
+    if (replace(executor, of_bodies_, admitted(of_bodies_.pairs, pairs, concerns))) has_all_ = false;
 }
 
 void OpenPairs::apply(std::span<const SlotPair> opened, std::span<const SlotPair> closed) {
     if (!opened.empty() || !closed.empty()) has_all_ = false;
     for (const SlotPair& pair : closed)
         if (const std::uint32_t slot = slot_of(pair); slot != none) close(slot);
-    for (const SlotPair& pair : opened) open(pair);
+    if (!refused_.empty())
+        std::erase_if(refused_, [&](const SlotPair& pair) { return std::ranges::binary_search(closed, pair); });
+    const auto concerns = [](const SlotPair&) { return false; };
+    for (const SlotPair& pair : admitted({}, opened, concerns)) open(pair);
 }
 
 void OpenPairs::close_all_of(BodySlot body) noexcept {
@@ -46,19 +82,24 @@ void OpenPairs::close_all_of(BodySlot body) noexcept {
         has_all_ = false;
         close(heads_[body] / 2);
     }
+    std::erase_if(refused_, [&](const SlotPair& pair) { return pair.first == body || pair.second == body; });
 }
 
 void OpenPairs::clear() noexcept {
     slots_.clear();
+    refused_.clear();
     free_all(heads_, links_, closed_, all_, of_bodies_, slices_, found_, lists_, sorted_, sorter_, next_slots_);
     has_all_ = true;
 }
 
 bool OpenPairs::compact(Executor& executor) {
     if (!slots_.is_mostly_empty()) return false;
-    const std::vector<SlotPair> pairs = all(executor).pairs;
+    const std::vector<SlotPair> pairs = all(executor).pairs, refused = refused_;
+    const bool asks_all = asks_all_;
     clear();
-    set_all(executor, pairs);
+    set_all(executor, pairs, true);
+    refused_ = refused;
+    asks_all_ = asks_all;
     return true;
 }
 

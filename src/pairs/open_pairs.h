@@ -5,6 +5,8 @@
 #include "pairs/pair_slots.h"
 #include "pairs/pair_sorter.h"
 
+#include <algorithm>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -14,8 +16,15 @@ namespace raycontact {
 /// close, or have a body that moved.
 class OpenPairs {
 public:
-    /// `pairs`, sorted, each once, become all that are open.
-    void set_all(Executor& executor, std::span<const SlotPair> pairs);
+    /// Says whether two bodies may be a pair.
+    using Admits = std::function<bool(const SlotPair&)>;
+    /// Asked about each pair of set_all(), set_of() and apply() as it would open, and about all in the next set_all().
+    void set_gate(Admits admits);
+    /// The gate has refused it, and it was not closed since.
+    bool is_refused(const SlotPair& pair) const { return std::ranges::binary_search(refused_, pair); }
+
+    /// `pairs`, sorted, each once, become all that are open. given: whatever the gate says.
+    void set_all(Executor& executor, std::span<const SlotPair> pairs, bool given = false);
     /// Of the pairs with a body of `bodies`, each once, `pairs` become those that are open. is_in: whether a body is
     /// one of them, by slot.
     void set_of(Executor& executor, std::span<const BodySlot> bodies, std::span<const char> is_in,
@@ -70,6 +79,9 @@ private:
     template <class BodyAt, class IsIn>
     void find(Executor& executor, std::size_t count, BodyAt&& body_at, IsIn&& is_in);
     void list_found(Executor& executor, PairList& list);
+    template <class Concerns>
+    std::span<const SlotPair> admitted(std::span<const SlotPair> old, std::span<const SlotPair> now,
+                                       Concerns&& concerns);
     bool replace(Executor& executor, PairList& list, std::span<const SlotPair> now);
     void compare(const PairList& old, std::span<const SlotPair> now, std::size_t slice);
 
@@ -77,6 +89,9 @@ private:
     std::vector<Edge> heads_; ///< by body
     std::vector<Link> links_; ///< by edge
     std::vector<SlotPair> closed_;
+    Admits admits_; ///< empty: no gate
+    bool asks_all_ = false;
+    std::vector<SlotPair> refused_, still_refused_, admitted_; ///< sorted
 
     PairList all_; ///< if it is up to date
     bool has_all_ = true;

@@ -54,6 +54,10 @@ public:
 
     /// The state kept for some pairs of the last step, for another part to go on with as this part would have. bodies
     /// as in the last step. Empty if the contacts do not depend on that state.
+    /// Before import_state() of pairs that another scene had: how bodies are placed, as of a step.
+    void learn(std::span<const PlacedBody> bodies, const SlotChanges& moved) {
+        motion_.update(*executor_, bodies, moved);
+    }
     std::vector<std::byte> export_state(std::span<const PlacedBody> bodies, const PairList& pairs);
     /// Adds such state: of the same pairs, in the slots that they have in this part. Call it before the begin() that
     /// first has them, with the same bodies.

@@ -34,7 +34,7 @@ std::vector<ContactPatch> contact_patches(const Shape& a, const Pose& pose_a, co
     check_inside(b, "the second mesh");
     OverlapPatches overlap;
     const PlacedBody body_b = body_of(b, pose_b);
-    if (!overlap.find(body_of(a, pose_a), body_b, true)) return {};
+    if (!overlap.find(body_of(a, pose_a), body_b, true, true)) return {};
     std::vector<ContactPatch> patches(overlap.patches().size());
     for (const FaceOverlap& face : overlap.faces()) {
         ContactPatch& patch = patches[face.patch];
@@ -44,12 +44,22 @@ std::vector<ContactPatch> contact_patches(const Shape& a, const Pose& pose_a, co
     }
     for (std::size_t i = 0; i < patches.size(); ++i) {
         ContactPatch& patch = patches[i];
+        const OverlapPatch& own = overlap.patches()[i];
+        const Vec3 centre = (1 / patch.volume) * patch.centre;
         patch.depth = patch.volume / patch.area;
-        patch.centre = transform_point(body_b.centred, (1 / patch.volume) * patch.centre);
-        patch.normal = unit(rotated(body_b.centred.rotation, overlap.patches()[i].normal));
+        patch.centre = transform_point(body_b.centred, centre);
+        patch.normal = unit(rotated(body_b.centred.rotation, own.normal));
+        for (const Vec3& corner : own.hull)
+            patch.hull.push_back(transform_point(body_b.centred, corner + dot(centre, own.normal) * own.normal));
     }
     std::ranges::stable_sort(patches, std::greater(), &ContactPatch::volume);
     return patches;
+}
+
+std::vector<Wrench> wrench_basis(const ContactPatch& patch, const Vec3& about) {
+    std::vector<Wrench> basis;
+    for (const Vec3& corner : patch.hull) basis.push_back({patch.normal, cross(corner - about, patch.normal)});
+    return basis;
 }
 
 } // namespace raycontact

@@ -95,6 +95,42 @@ void within(const ShadowPolygon& polygon, std::span<const OutlineSegment> outlin
     }
 }
 
+/// Whether a place lies in an outline, or beside it by rounding. No outline is around everything.
+bool is_within(const ShadowCorner& at, std::span<const OutlineSegment> outline, const View& view, double error) {
+    bool inside = outline.empty();
+    for (const auto& [from, to] : outline) {
+        const ShadowCorner p = view.of(from), q = view.of(to);
+        const double x = q.x - p.x, y = q.y - p.y, square = x * x + y * y;
+        const double along = square > 0 ? std::clamp(((at.x - p.x) * x + (at.y - p.y) * y) / square, 0.0, 1.0) : 0;
+        if (std::hypot(at.x - (p.x + along * x), at.y - (p.y + along * y)) <= error) return true;
+        if ((p.x <= at.x) == (q.x <= at.x)) continue;
+        if ((doubled_area(p, q, at) > 0) == (q.x > p.x)) inside = !inside; // it is below
+    }
+    return inside;
+}
+
+/// The corners of the convex hull, counter-clockwise (Andrew 1979), without those that add less than `error` to it.
+std::vector<ShadowCorner> hull_of(std::vector<ShadowCorner>& points, double error) {
+    std::ranges::sort(points, {}, [](const ShadowCorner& c) { return std::pair(c.x, c.y); });
+    std::vector<ShadowCorner> hull;
+    const auto add = [&](const ShadowCorner& next, std::size_t first) {
+        while (hull.size() >= first + 2 && !(doubled_area(hull[hull.size() - 2], hull.back(), next) > 0))
+            hull.pop_back();
+        hull.push_back(next);
+    };
+    for (const ShadowCorner& point : points) add(point, 0);
+    const std::size_t back = hull.empty() ? 0 : hull.size() - 1;
+    for (std::size_t i = points.size(); i-- > 0;) add(points[i], back);
+    std::vector<ShadowCorner> kept;
+    if (!hull.empty()) kept.push_back(hull[0]);
+    for (std::size_t i = 1; i + 1 < hull.size(); ++i) { // the last is the first again
+        const ShadowCorner &before = kept.back(), &after = hull[i + 1];
+        const double base = std::hypot(after.x - before.x, after.y - before.y);
+        if (doubled_area(before, hull[i], after) > error * base) kept.push_back(hull[i]);
+    }
+    return kept;
+}
+
 /// Whether nothing lies between the faces in the middle of a column: either body ends there first.
 bool is_whole(const PairMeshes& pair, const View& view, const Column& column) {
     const Vec3 middle = column.x * view.x + column.y * view.y + column.height * view.up;
@@ -111,10 +147,11 @@ bool is_whole(const PairMeshes& pair, const View& view, const Column& column) {
 }
 
 /// Calls visit(face of a, face of b, column) for what lies over each other of a face of one side and the inner faces of
-/// the other; of one part of these, if that is not NONE. view.up: from a to b.
+/// the other; of one part of these, if that is not NONE. view.up: from a to b. corners: unless null, gets what together
+/// has the convex hull of each column.
 template <class Visit>
 void each_over(const PairMeshes& pair, const InnerSurfaces& surfaces, const View& view, std::size_t side,
-               const InnerFace& own, std::uint32_t other_part, Visit&& visit) {
+               const InnerFace& own, std::uint32_t other_part, std::vector<ShadowCorner>* corners, Visit&& visit) {
     const double looks = side == 0 ? 1 : -1; // a's faces look along the normal, b's against it
     if (!(looks * dot(own.normal, view.up) > upright)) return;
     const ShadowFace shadow = seen(pair, view, side, own.face);
@@ -155,13 +192,27 @@ void each_over(const PairMeshes& pair, const InnerSurfaces& surfaces, const View
             const ShadowPolygon polygon =
                 clipped(shared_shadow(of_a, of_b), [](const ShadowCorner& c) { return c.first - c.second; });
             Column column;
+            const std::size_t before = corners != nullptr ? corners->size() : 0;
             within(polygon, surfaces.outline(face_a), view, 1, 1, [&](const ShadowPolygon& part, double sign) {
-                within(part, surfaces.outline(face_b), view, -1, sign,
-                       [&](const ShadowPolygon& shared, double of) { column.add(shared, of); });
+                within(part, surfaces.outline(face_b), view, -1, sign, [&](const ShadowPolygon& shared, double of) {
+                    column.add(shared, of);
+                    if (corners != nullptr)
+                        corners->insert(corners->end(), shared.corners.begin(),
+                                        shared.corners.begin() + std::ptrdiff_t(shared.count));
+                });
             });
-            if (!(column.volume > 0) || !(column.area > 0)) continue;
-            column.finish(of_a, of_b);
-            if (is_whole(pair, view, column)) visit(face_a, face_b, column);
+            const bool counts =
+                column.volume > 0 && column.area > 0 && (column.finish(of_a, of_b), is_whole(pair, view, column));
+            // Where an outline runs, some of the polygons are taken off others: their corners may lie outside.
+            if (corners != nullptr) {
+                const auto lies_outside = [&](const ShadowCorner& c) {
+                    return !counts || !is_within(c, surfaces.outline(face_a), view, slack)
+                           || !is_within(c, surfaces.outline(face_b), view, slack);
+                };
+                corners->erase(std::remove_if(corners->begin() + std::ptrdiff_t(before), corners->end(), lies_outside),
+                               corners->end());
+            }
+            if (counts) visit(face_a, face_b, column);
         }
         return true;
     });
@@ -183,7 +234,8 @@ void follow_all(const PairMeshes& meshes, const ShapePair& pair, Loops& loops) {
     });
 }
 
-bool OverlapPatches::find(const PlacedBody& a, const PlacedBody& b, bool of_file) {
+bool OverlapPatches::find(const PlacedBody& a, const PlacedBody& b, bool of_file, bool hulls) {
+    hulls_ = hulls;
     overlaps_.clear();
     patches_.clear();
     const PairMeshes pair(a, b, of_file);
@@ -259,7 +311,7 @@ void OverlapPatches::look_along(const PairMeshes& pair, std::size_t side, std::u
     const Vec3 way = unit(parts_[part].area);
     const View view(side == 0 ? way : -1.0 * way);
     for (const std::uint32_t i : faces_of(part))
-        each_over(pair, surfaces_, view, side, faces[i], NONE,
+        each_over(pair, surfaces_, view, side, faces[i], NONE, nullptr,
                   [&](const InnerFace& of_a, const InnerFace& of_b, const Column& column) {
                       Covered& covered = covered_[{of_a.part, of_b.part}];
                       covered.region = of_a.region;
@@ -296,8 +348,9 @@ void OverlapPatches::list_overlaps(const PairMeshes& pair, const Parts& parts, c
     const Vec3 normal = normal_of(parts, covered);
     if (normal == Vec3{}) return;
     const View view(normal);
+    std::vector<ShadowCorner> corners;
     for (const std::uint32_t i : faces_of(parts[side]))
-        each_over(pair, surfaces_, view, side, surfaces_.of(side)[i], parts[other],
+        each_over(pair, surfaces_, view, side, surfaces_.of(side)[i], parts[other], hulls_ ? &corners : nullptr,
                   [&](const InnerFace& of_a, const InnerFace& of_b, const Column& column) {
                       overlaps_.push_back({{of_a.face, of_b.face},
                                            patch,
@@ -305,7 +358,10 @@ void OverlapPatches::list_overlaps(const PairMeshes& pair, const Parts& parts, c
                                            column.volume,
                                            column.x * view.x + column.y * view.y + column.height * view.up});
                   });
-    if (overlaps_.size() > before) patches_.push_back({parts, normal, covered.region});
+    if (overlaps_.size() == before) return;
+    patches_.push_back({parts, normal, covered.region, {}});
+    for (const ShadowCorner& corner : hull_of(corners, 1e-10 * pair.size()))
+        patches_.back().hull.push_back(corner.x * view.x + corner.y * view.y);
 }
 
 } // namespace raycontact

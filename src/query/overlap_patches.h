@@ -30,13 +30,14 @@ struct OverlapPatch {
     std::array<std::uint32_t, 2> parts; ///< of a and of b
     Vec3 normal;                        ///< from a to b, unit, b's centred frame
     std::uint32_t region;               ///< of the faces on both sides
+    std::vector<Vec3> hull;             ///< ContactPatch::hull, in the plane through that frame's origin; if asked for
 };
 
 /// What two closed bodies share, as patches of pressure. Keeps nothing but memory from one pair to the next.
 class OverlapPatches {
 public:
     /// Whether the surfaces cross, and in closed loops alone. Both bodies have an inside. of_file: as of PairMeshes.
-    bool find(const PlacedBody& a, const PlacedBody& b, bool of_file);
+    bool find(const PlacedBody& a, const PlacedBody& b, bool of_file, bool hulls = false);
     std::span<const FaceOverlap> faces() const { return overlaps_; } ///< sorted by faces, of a first
     std::span<const OverlapPatch> patches() const { return patches_; }
     const InnerSurfaces& surfaces() const { return surfaces_; }
@@ -66,6 +67,7 @@ private:
         return std::span(by_part_).subspan(part_first_[part], part_first_[part + 1] - part_first_[part]);
     }
 
+    bool hulls_ = false;
     Loops loops_;
     EdgePieces pieces_;
     InnerSurfaces surfaces_;

@@ -74,6 +74,23 @@ std::optional<BodyRayHit> Scene::raycast(const Vec3& origin, const Vec3& directi
     return nearest.found();
 }
 
+std::vector<BodyRayHit> Scene::raycast_all(const Vec3& origin, const Vec3& direction, double max,
+                                           const Wanted& wanted) const {
+    const FloatEnvironment environment;
+    const CheckedRay ray(origin, direction, max);
+    std::vector<BodyRayHit> found;
+    visit_near([&](const Vec3& low, const Vec3& high) { return ray.away(low, high); }, [&] { return max; },
+               [&](BodyId body) {
+                   if (wanted && !wanted(body)) return;
+                   if (const auto hit = raycontact::raycast(shape(body), pose(body), origin, direction, max))
+                       found.push_back({*hit, body});
+               });
+    std::ranges::sort(found, [](const BodyRayHit& a, const BodyRayHit& b) {
+        return a.distance < b.distance || (a.distance == b.distance && a.body < b.body);
+    });
+    return found;
+}
+
 bool Scene::raycast_any(const Vec3& origin, const Vec3& direction, double max, const Wanted& wanted) const {
     const FloatEnvironment environment;
     const CheckedRay ray(origin, direction, max);

@@ -78,8 +78,8 @@ public:
     /// Goes down from where they are nearer than anywhere before, until they are nowhere nearer by the tolerance.
     std::optional<PathClearance> clearance(double max, double tolerance) const {
         if (const auto met = first_impact(checked_nearness(a_, b_, 0, 0)))
-            return PathClearance{{met->distance, met->point_a, met->point_b, met->triangle_a, met->triangle_b},
-                                 met->time};
+            return PathClearance{
+                {met->distance, met->point_a, met->point_b, met->triangle_a, met->triangle_b}, met->time, true};
         PathClearance least;
         double after = 0; // until then they are not nearer than what was looked for last
         if (std::isfinite(max)) {

@@ -5,6 +5,7 @@
 #include "free_all.h"
 #include "pairs/rounding.h"
 #include "shape/shape_data.h"
+#include "state_bytes.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,21 +20,6 @@ namespace {
 /// Metres. No mesh reaches as far (Mesh: 1e9 m), so nothing is lost; and a ray that ended beyond 1e30 m would meet the
 /// inverted boxes of a tree's empty lanes.
 constexpr double farthest_ahead = 1e12;
-
-template <class T>
-void put_bytes(std::vector<std::byte>& bytes, const T& value) {
-    const auto* const from = reinterpret_cast<const std::byte*>(&value);
-    bytes.insert(bytes.end(), from, from + sizeof value);
-}
-
-template <class T>
-T take_bytes(std::span<const std::byte>& bytes) {
-    if (bytes.size() < sizeof(T)) throw std::logic_error("the state of a pair that changes its device is cut off");
-    T value;
-    std::memcpy(&value, bytes.data(), sizeof value);
-    bytes = bytes.subspan(sizeof value);
-    return value;
-}
 
 // Cost of a full test that finds no rays, in rays followed; `predictive`, where following costs more, has a lower
 // ratio.

@@ -56,12 +56,13 @@ def test_the_least_distance_on_a_way(torus, bracket):
     paths = np.stack([helpers.random_poses(n, 4) for _ in range(3)], axis=1)
     many = rc.path_clearance(torus, bracket, paths, tolerance=1e-5)
     met = np.isfinite(rc.time_of_impact(torus, bracket, paths).time)
-    assert 0 < met.sum() < n and ((many.distance < 1e-6) == met).all()
+    assert 0 < met.sum() < n and ((many.distance < 1e-6) == met).all() and (many.meet == met).all()
     for i in np.flatnonzero(~met):
         poses = rc.distance(torus, bracket, paths[i])
         assert many.distance[i] <= poses.distance.min() + 1e-9
         one = rc.path_clearance(torus, bracket, paths[i], tolerance=1e-5)
         assert one.distance == many.distance[i] and one.time == many.time[i] and isinstance(one.time, float)
+        assert one.meet is False
         assert np.isinf(rc.path_clearance(torus, bracket, paths[i], max=0.9 * one.distance).time)
 
 

@@ -416,6 +416,13 @@ def test_patches_and_weighted_contacts_say_how_bodies_press(torus):
     assert push == pytest.approx([0, 0, volume], abs=1e-9)
     assert (patches.centre * patches.volume[:, None]).sum(axis=0)[:2] / volume == pytest.approx([0.1, 0.2], abs=1e-6)
     assert patches.depth == pytest.approx(patches.volume / patches.area)
+    assert len(patches.first_corner) == len(patches.pair) + 1 and patches.first_corner[-1] == len(patches.corners)
+    for i, normal in enumerate(patches.normal):
+        hull, basis = patches.hull(i), patches.wrench_basis(i, [1, 2, 3])
+        assert len(hull) >= 3 and (hull - patches.centre[i]) @ normal == pytest.approx(0, abs=1e-9)
+        assert (np.cross(np.roll(hull, -1, axis=0) - hull, patches.centre[i] - hull) @ normal > 0).all()
+        assert (basis[:, :3] == normal).all()
+        assert basis[:, 3:] == pytest.approx(np.cross(hull - [1, 2, 3], normal))
     contacts = rc.collide(floor, torus, under, over, direction="weighted")
     assert set(contacts.kind) == {rc.FeatureKind.FACES}
     assert (contacts.depth * contacts.weight).sum() == pytest.approx(volume, rel=1e-5)

@@ -4,6 +4,7 @@
 import fractions
 import json
 import os
+import pickle
 import subprocess
 
 import brute_force
@@ -461,3 +462,84 @@ def test_a_scene_tells_which_device_it_chose():
     assert rc.Scene(devices="auto", schedule="counted").device_choice.startswith(
         "cpu: schedule counted goes by no clock"
     )
+
+
+@pytest.fixture(scope="module")
+def box():
+    return rc.Shape(rc.box((2, 2, 2)))
+
+
+def test_touches_begin_and_end(box):
+    scene = rc.Scene()
+    a, b, c = scene.add(box, np.stack([rc.pose([x, 0, 0]) for x in (0, 1.9, 9)]))
+    scene.find_contacts()
+    assert scene.begun.bodies.tolist() == [[a, b]] == scene.touching.bodies.tolist()
+    assert scene.begun.normal[0] == pytest.approx([1, 0, 0]) and scene.begun.depth[0] == pytest.approx(0.1, abs=1e-6)
+    assert scene.begun.point.shape == (1, 3) and scene.begun.sensor.tolist() == [False]
+    scene.set_poses(b, rc.pose([2.001, 0, 0]))
+    scene.find_contacts()
+    assert len(scene.begun.bodies) == len(scene.ended.bodies) == 0, "it trembles"
+    scene.set_poses(b, rc.pose([5, 0, 0]))
+    scene.find_contacts()
+    assert scene.ended.bodies.tolist() == [[a, b]]
+    scene.set_poses(c, rc.pose([6.5, 0, 0]))
+    scene.set_sensor(c)
+    assert scene.is_sensor(c) and not scene.is_sensor(b)
+    assert len(scene.find_contacts()) == 0 and scene.begun.sensor.tolist() == [True]
+    scene.set_sensor([c], False)
+    assert len(scene.find_contacts()) > 0 and len(scene.begun.bodies) == 0
+
+
+def test_filters_static_bodies_and_a_callback_keep_pairs_apart(box):
+    scene = rc.Scene()
+    ids = scene.add(box, np.stack([rc.pose([1.9 * i, 0, 0]) for i in range(4)]))
+    scene.set_static(ids[:2])
+    assert scene.is_static(ids[0]) and not scene.is_static(ids[2])
+    scene.find_contacts()
+    assert scene.pairs.tolist() == [[ids[1], ids[2]], [ids[2], ids[3]]]
+    scene.set_static(ids[:2], False)
+    asked = []
+    scene.set_pair_filter(lambda a, b: asked.append((a, b)) or a != ids[1])
+    scene.find_contacts()
+    assert asked == [(ids[i], ids[i + 1]) for i in range(3)]
+    assert scene.pairs.tolist() == [[ids[0], ids[1]], [ids[2], ids[3]]]
+    scene.set_pair_filter(lambda a, b: scene.clear())
+    with pytest.raises(RuntimeError):
+        scene.find_contacts()
+    scene.set_pair_filter(None)
+    scene.find_contacts()
+    assert len(scene.pairs) == 3
+    scene.clear()
+    assert len(scene) == 0
+
+
+def test_all_hits_of_a_ray(box):
+    scene = rc.Scene()
+    ids = scene.add(box, np.stack([rc.pose([x, 0, 0]) for x in (8, 4, 12)]))
+    hits = scene.raycast_all([0, 0.1, 0.2], [2, 0, 0])
+    assert hits.body.tolist() == [ids[1], ids[0], ids[2]] and hits.distance == pytest.approx([3, 7, 11])
+    assert scene.raycast_all([0, 0, 0], [1, 0, 0], 8, wanted=ids[1:]).body.tolist() == [ids[1]]
+    assert len(scene.raycast_all([0, 0, 5], [1, 0, 0]).body) == 0
+    with pytest.raises(rc.InputError, match="one ray"):
+        scene.raycast_all(np.zeros((2, 3)), [1, 0, 0])
+
+
+@pytest.mark.parametrize("method", ["certified", "predictive"])
+def test_a_state_is_pickled_and_repeats(torus, method):
+    def step(scene, i):
+        scene.set_poses(scene.ids, np.stack([rc.pose([0.9 * k + 0.01 * i * (k % 3), 0.2, 0]) for k in range(6)]))
+        return scene.find_contacts()
+
+    scene = rc.Scene(method=method)
+    scene.add([torus] * 6)
+    for i in range(5):
+        step(scene, i)
+    state = pickle.loads(pickle.dumps(scene.save_state()))
+    expected = [step(scene, i) for i in range(5, 10)]
+    for again in (rc.Scene(method=method), scene):
+        again.load_state(state)
+        assert all(helpers.same(step(again, i), expected[i - 5]) for i in range(5, 10))
+    with pytest.raises(rc.InputError, match="damaged"):
+        scene.load_state(state._replace(data=state.data[:-1] + b"?"))
+    with pytest.raises(rc.InputError, match="settings"):
+        rc.Scene(direction="ray").load_state(state)

@@ -54,6 +54,8 @@ from .scene import (
     OneBodyClosestPoint,
     OneBodyRayHit,
     Scene,
+    SceneState,
+    Touches,
 )  # fmt: skip
 from .shape import Mass, Shape, SheetWarning
 from .show import show
@@ -61,13 +63,13 @@ from .show import show
 __version__: str = _core.version
 
 __all__ = [
-    "CONTACT_DTYPE", "AssemblyPart", "BodyClosestPoints", "BodyImpact", "BodyOverlaps", "BodyRayHits", "Clash",
+    "AssemblyPart", "BodyClosestPoints", "BodyImpact", "BodyOverlaps", "BodyRayHits", "CONTACT_DTYPE", "Clash",
     "Clashes", "ClosestPoint", "CollisionManager", "ContactPatches", "Contacts", "DeviceInfo", "Distance",
     "FeatureKind", "Impact", "InputError", "LostContacts", "Mass", "Mesh", "MeshReport", "OneBodyClosestPoint",
     "OneBodyRayHit", "OneClosestPoint", "OneDistance", "OneRayHit", "OneSignedDistance", "PairContacts",
-    "PathClearance", "RayHit", "RecordedStep", "Recorder", "Recording", "Scene", "Separation", "Shape", "SheetWarning",
-    "SignedDistance", "StepStats", "box", "clash", "closest_point", "collide", "common_point", "contact_patches",
-    "contains", "distance", "distance_grid", "heightfield", "intersects", "list_devices", "load_assembly",
-    "nearest_rigid", "path_clearance", "pose", "pose_from_quaternion", "raycast", "raycast_any", "samples",
-    "separation", "show", "signed_distance", "time_of_impact", "wrench_cone",
+    "PathClearance", "RayHit", "RecordedStep", "Recorder", "Recording", "Scene", "SceneState", "Separation", "Shape",
+    "SheetWarning", "SignedDistance", "StepStats", "Touches", "box", "clash", "closest_point", "collide",
+    "common_point", "contact_patches", "contains", "distance", "distance_grid", "heightfield", "intersects",
+    "list_devices", "load_assembly", "nearest_rigid", "path_clearance", "pose", "pose_from_quaternion", "raycast",
+    "raycast_any", "samples", "separation", "show", "signed_distance", "time_of_impact", "wrench_cone",
 ]  # fmt: skip

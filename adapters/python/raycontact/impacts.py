@@ -46,6 +46,7 @@ class PathClearance(NamedTuple):
         lies.
     triangle_b: likewise for point_b.
     time: a float or (n,) float64: from 0 to 1 between two poses; along p poses from 0 to p - 1.
+    meet: a bool or (n,) bool: they do, as `time_of_impact` has it.
     """
 
     distance: Union[float, NDArray[np.float64]]
@@ -54,6 +55,7 @@ class PathClearance(NamedTuple):
     triangle_a: Union[int, NDArray[np.int64]]
     triangle_b: Union[int, NDArray[np.int64]]
     time: Union[float, NDArray[np.float64]]
+    meet: Union[bool, NDArray[np.bool_]]
 
 
 class BodyImpact(NamedTuple):
@@ -131,7 +133,8 @@ def path_clearance(
     """
     moving = _Moving(a, b, path_a, path_b, "path_clearance")
     metres = as_length(max, "max"), as_length(tolerance, "tolerance")
-    return PathClearance(*moving.answers(_core.path_clearances(*moving.given, *metres, as_count(threads, "threads"))))
+    *least, meet = _core.path_clearances(*moving.given, *metres, as_count(threads, "threads"))
+    return PathClearance(*moving.answers((*least, meet.view(np.bool_))))
 
 
 class _Moving(Batch):

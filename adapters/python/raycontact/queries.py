@@ -90,6 +90,8 @@ class ContactPatches(NamedTuple):
     depth: (n,) float64, metres, the mean: volume / area.
     centre: (n, 3) float64, metres, world frame: the middle of that volume, where its pressure acts.
     normal: (n, 3) float64, unit, world frame, from a to b: the way in which b leaves a there.
+    corners: (m, 3) float64, metres, world frame: of the convex hulls, one after the other; see `hull`.
+    first_corner: (n + 1,) int64: where those of each begin.
     """
 
     pair: NDArray[np.int64]
@@ -98,6 +100,21 @@ class ContactPatches(NamedTuple):
     depth: NDArray[np.float64]
     centre: NDArray[np.float64]
     normal: NDArray[np.float64]
+    corners: NDArray[np.float64]
+    first_corner: NDArray[np.int64]
+
+    def hull(self, i: int) -> NDArray[np.float64]:
+        """(k, 3): the corners of the convex hull of what presses in the i-th patch, in the plane through its centre
+        across its normal; counter-clockwise where the normal points at the reader."""
+        return self.corners[self.first_corner[i] : self.first_corner[i + 1]]
+
+    def wrench_basis(self, i: int, about: ArrayLike) -> NDArray[np.float64]:
+        """(k, 6): what the i-th patch can do to b without friction, however its pressure is spread: forces of 1 N along
+        the normal at the corners of the hull, and their torques about a point, (3,), metres, world frame. Sums of
+        these rows with factors from 0 on are all there is."""
+        arms = self.hull(i) - as_points(about, "about")
+        force = np.broadcast_to(self.normal[i], arms.shape)
+        return np.hstack([force, np.cross(arms, force)])
 
 
 class ClosestPoint(NamedTuple):

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple, Optional, Union, overload
+from typing import Any, Callable, NamedTuple, Optional, Union, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -45,6 +45,34 @@ class LostContacts(NamedTuple):
 
     bodies: NDArray[np.int64]
     key: NDArray[np.uint64]
+
+
+class Touches(NamedTuple):
+    """Pairs of bodies that touch, by slots.
+
+    bodies: (n, 2) int64: ids; of those that ended, bodies may have been removed since.
+    point: (n, 3) float64, metres, world frame: between the witness points of the deepest contact of the last step in
+        which the two had any.
+    normal, depth: (n, 3) and (n,) float32: that contact's.
+    sensor: (n,) bool: one of the two is a sensor.
+    """
+
+    bodies: NDArray[np.int64]
+    point: NDArray[np.float64]
+    normal: NDArray[np.float32]
+    depth: NDArray[np.float32]
+    sensor: NDArray[np.bool_]
+
+
+class SceneState(NamedTuple):
+    """What `Scene.save_state` tells; can be pickled.
+
+    data: all but the shapes.
+    shapes: those of the bodies, each once, which `data` names by their places.
+    """
+
+    data: bytes
+    shapes: list[Shape]
 
 
 class BodyRayHits(NamedTuple):
@@ -251,6 +279,57 @@ class Scene:
         """
         self._core.set_filter(as_ids(ids, "ids")[0], as_count(groups, "groups"), as_count(mask, "mask"))
 
+    def set_static(self, ids: ArrayLike, static: bool = True) -> None:
+        """A static body makes no pair with another static one: for what stays, and for bodies that sleep. What touched
+        when both became static goes on touching until either moves or is static no more. A list of pairs that is given
+        to `find_contacts` is tested all the same.
+
+        ids: one or (n,). Raises InputError for an id that is not in the scene.
+        """
+        self._core.set_static(as_ids(ids, "ids")[0], bool(static))
+
+    def is_static(self, id: _Id) -> bool:
+        """As `set_static` has it. Raises InputError for an id that is not in the scene."""
+        return self._core.is_static(as_id(id, "id"))
+
+    def set_sensor(self, ids: ArrayLike, sensor: bool = True) -> None:
+        """A sensor has no contacts: `begun`, `ended` and `touching` alone tell what touches it, from the next step on.
+
+        ids: one or (n,). Raises InputError for an id that is not in the scene.
+        """
+        self._core.set_sensor(as_ids(ids, "ids")[0], bool(sensor))
+
+    def is_sensor(self, id: _Id) -> bool:
+        """As `set_sensor` has it. Raises InputError for an id that is not in the scene."""
+        return self._core.is_sensor(as_id(id, "id"))
+
+    def set_pair_filter(self, callback: Optional[Callable[[int, int], bool]]) -> None:
+        """callback(a, b) is asked about each pair that would come into being, as its boxes begin to touch: False keeps
+        the two apart until their boxes have parted. a has the lower slot. It must not use the scene; what it raises,
+        `find_contacts` raises. None: no callback. A list of pairs that is given to `find_contacts` is tested all the
+        same."""
+        self._core.set_pair_filter(callback)
+
+    def clear(self) -> None:
+        """Removes all bodies."""
+        self._core.clear()
+
+    def save_state(self) -> SceneState:
+        """All that later steps depend on, but for settings and the pair filter: bodies with ids, poses and filters,
+        contacts, touches, and what the method keeps of pairs. Call it between two steps."""
+        data, shapes = self._core.save_state()
+        return SceneState(data, [Shape._wrap(shape) for shape in shapes])
+
+    def load_state(self, state: SceneState) -> None:
+        """Puts back what `save_state` told, in this scene or in another with equal settings (devices and threads may
+        differ): later steps find, bit for bit, what they found after it. Ids mean again what they meant; what was here
+        is gone, and nothing is told of it.
+
+        Raises InputError for a state that is damaged, of another version, of other settings or with other shapes,
+        before anything changes.
+        """
+        self._core.load_state(state.data, [shape._core for shape in state.shapes])
+
     def shape(self, id: _Id) -> Shape:
         """The one that the body was added with. Raises InputError for an id that is not in the scene."""
         return Shape._wrap(self._core.shape(as_id(id, "id")))
@@ -323,6 +402,24 @@ class Scene:
         return LostContacts(*self._core.lost_contacts())
 
     @property
+    def begun(self) -> Touches:
+        """Pairs of bodies that touch since the last step, those of sensors, too. Two bodies begin to touch with a
+        contact that touches, or with a speculative one that will, if both go on to where they are expected
+        (`set_next_poses`). They end when they have no contact that touches and are farther apart than 0.0025 of the
+        smaller body's box diagonal: a body that rests, and trembles, touches all the time."""
+        return _touches(self._core.begun())
+
+    @property
+    def ended(self) -> Touches:
+        """Pairs that no longer touch, and those of which a body was removed since the last step."""
+        return _touches(self._core.ended())
+
+    @property
+    def touching(self) -> Touches:
+        """All pairs that touch."""
+        return _touches(self._core.touching())
+
+    @property
     def pairs(self) -> NDArray[np.int64]:
         """(n, 2) int64: ids of the pairs of the last step, sorted by slots."""
         return self._core.pairs
@@ -375,6 +472,17 @@ class Scene:
         batch, starts, along = _rays(origins, directions)
         hits = self._core.raycast(starts, along, as_length(max, "max"), _wanted(wanted))
         return batch.answer(OneBodyRayHit, BodyRayHits, (*hits[0], hits[1]))
+
+    def raycast_all(
+        self, origin: OnePoint, direction: OnePoint, max: float = np.inf, *, wanted: Optional[ArrayLike] = None
+    ) -> BodyRayHits:
+        """Each body that one ray meets, with its first hit: arrays (n,) and (n, 3), by distance, then by slot.
+        Arguments and errors are those of `raycast`, but origin and direction (3,)."""
+        batch, starts, along = _rays(origin, direction)
+        if batch.shape != ():
+            raise InputError(f"raycast_all: takes one ray, not {batch.shape}; ask about one after the other")
+        hits = self._core.raycast_all(starts, along, as_length(max, "max"), _wanted(wanted))
+        return BodyRayHits(*hits[0], hits[1])
 
     @overload
     def raycast_any(
@@ -599,6 +707,11 @@ class Scene:
     def __repr__(self) -> str:
         settings = self._core.settings
         return f"<Scene: {len(self)} bodies, method {settings['method']}, devices {settings['devices']}>"
+
+
+def _touches(columns: tuple[NDArray[Any], ...]) -> Touches:
+    bodies, point, normal, depth, sensor = columns
+    return Touches(bodies, point, normal, depth, sensor.view(np.bool_))
 
 
 def _wanted(ids: Optional[ArrayLike]) -> Optional[NDArray[np.int64]]:

@@ -87,8 +87,12 @@ nb::tuple all_contact_patches(const PlacedPairs& pairs) {
     IndexColumn pair(n);
     LengthColumn area(n), volume(n), depth(n);
     VectorColumn centre(n), normal(n);
+    std::vector<double> corners;
+    std::vector<std::int64_t> first_corner{0};
     for (std::size_t i = 0; i < found.size(); ++i)
         for (const ContactPatch& patch : found[i]) {
+            for (const Vec3& corner : patch.hull) corners.insert(corners.end(), {corner.x, corner.y, corner.z});
+            first_corner.push_back(static_cast<std::int64_t>(corners.size() / 3));
             pair.set(at, static_cast<std::int64_t>(i));
             area.set(at, patch.area);
             volume.set(at, patch.volume);
@@ -96,7 +100,9 @@ nb::tuple all_contact_patches(const PlacedPairs& pairs) {
             centre.set(at, patch.centre);
             normal.set(at++, patch.normal);
         }
-    return nb::make_tuple(pair.take(), area.take(), volume.take(), depth.take(), centre.take(), normal.take());
+    const std::size_t count = corners.size() / 3;
+    return nb::make_tuple(pair.take(), area.take(), volume.take(), depth.take(), centre.take(), normal.take(),
+                          array_of(std::move(corners), {count, 3}), array_of(std::move(first_corner), {n + 1}));
 }
 
 /// Each pair's bodies are 2 i and 2 i + 1 of one scene that lives for the call. Pairs go in blocks, with their bodies,
@@ -176,14 +182,16 @@ nb::tuple path_clearances(const Shapes& a, const Matrices& poses_a, std::size_t 
     const MovingPairs pairs(a, poses_a, steps_a, b, poses_b, steps_b, threads);
     DistanceColumns least(pairs.count);
     LengthColumn time(pairs.count);
+    AnswerColumn meet(pairs.count);
     pairs.for_each([&](std::size_t i, const Shape& one, Path path, const Shape& other, Path others) {
         const auto found = path_clearance(one, path, other, others, max, tolerance);
         if (!found) return;
         least.set(i, *found);
         time.set(i, found->time);
+        meet.set(i, found->meet);
     });
     return nb::make_tuple(least.distance.take(), least.point_a.take(), least.point_b.take(), least.triangle_a.take(),
-                          least.triangle_b.take(), time.take());
+                          least.triangle_b.take(), time.take(), meet.take());
 }
 
 nb::tuple closest_points(const Shape& shape, const Matrices& matrices, const Points& given, double max,

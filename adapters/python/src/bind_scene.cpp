@@ -108,6 +108,60 @@ nb::tuple lost_contacts(GuardedScene& guarded) {
     return nb::make_tuple(array_of(std::move(bodies), {lost.size(), 2}), array_of(std::move(keys), {lost.size()}));
 }
 
+/// Columns: bodies, point, normal, depth, sensor.
+nb::tuple columns_of(std::span<const Touch> touches) {
+    std::vector<std::int64_t> bodies;
+    std::vector<double> points;
+    std::vector<float> normals, depths;
+    AnswerColumn sensors(touches.size());
+    for (std::size_t i = 0; i < touches.size(); ++i) {
+        const Touch& touch = touches[i];
+        bodies.insert(bodies.end(), {number_of(touch.body_a), number_of(touch.body_b)});
+        points.insert(points.end(), {touch.point.x, touch.point.y, touch.point.z});
+        normals.insert(normals.end(), {touch.normal.x, touch.normal.y, touch.normal.z});
+        depths.push_back(touch.depth);
+        sensors.set(i, touch.sensor);
+    }
+    const std::size_t n = touches.size();
+    return nb::make_tuple(array_of(std::move(bodies), {n, 2}), array_of(std::move(points), {n, 3}),
+                          array_of(std::move(normals), {n, 3}), array_of(std::move(depths), {n}), sensors.take());
+}
+
+/// callback: None, or (a, b) -> bool, called on the thread of the step.
+void set_pair_filter(GuardedScene& guarded, const nb::object& callback) {
+    const auto scene = guarded.enter();
+    if (callback.is_none()) return scene->set_pair_filter({});
+    // A copy of the filter may be freed without the lock that Python's counts need.
+    const std::shared_ptr<nb::object> held(new nb::object(callback), [](nb::object* object) {
+        const nb::gil_scoped_acquire gil;
+        delete object;
+    });
+    scene->set_pair_filter([held](BodyId a, BodyId b) {
+        const nb::gil_scoped_acquire gil;
+        return nb::cast<bool>(nb::bool_((*held)(number_of(a), number_of(b))));
+    });
+}
+
+nb::tuple save_state(GuardedScene& guarded) {
+    const auto scene = guarded.enter();
+    std::vector<std::byte> state;
+    std::vector<std::shared_ptr<Shape>> shapes;
+    {
+        const WithoutGil without_gil;
+        state = scene->save_state();
+        for (const auto& shape : scene->shapes()) shapes.push_back(std::const_pointer_cast<Shape>(shape));
+    }
+    return nb::make_tuple(nb::bytes(reinterpret_cast<const char*>(state.data()), state.size()), shapes);
+}
+
+void load_state(GuardedScene& guarded, const nb::bytes& state, const std::vector<std::shared_ptr<Shape>>& given) {
+    const auto scene = guarded.enter();
+    const std::vector<std::shared_ptr<const Shape>> shapes(given.begin(), given.end());
+    const auto bytes = std::as_bytes(std::span(state.c_str(), state.size()));
+    const WithoutGil without_gil;
+    scene->load_state(bytes, shapes);
+}
+
 /// The bodies that a query counts. No ids given: all.
 class Chosen {
 public:
@@ -288,6 +342,22 @@ nb::tuple raycast(GuardedScene& guarded, const Points& origins, const Points& di
     return nb::make_tuple(hits.take(), bodies.take());
 }
 
+/// Of one ray.
+nb::tuple raycast_all(GuardedScene& guarded, const Points& origins, const Points& directions, double max,
+                      const std::optional<Ids>& ids) {
+    const auto scene = guarded.enter();
+    const Chosen chosen(*scene, ids);
+    const Rays rays(origins, directions);
+    const auto found = scene->raycast_all(rays.from[0], rays.along[0], max, chosen.wanted());
+    RayHitColumns hits(found.size());
+    IndexColumn bodies(found.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        hits.set(i, found[i]);
+        bodies.set(i, number_of(found[i].body));
+    }
+    return nb::make_tuple(hits.take(), bodies.take());
+}
+
 Array raycast_any(GuardedScene& guarded, const Points& origins, const Points& directions, double max,
                   const std::optional<Ids>& ids) {
     const auto scene = guarded.enter();
@@ -390,6 +460,33 @@ void bind_scene(nb::module_& m) {
             },
             "ids"_a, "groups"_a, "mask"_a)
         .def(
+            "set_static",
+            [](GuardedScene& guarded, const Ids& ids, bool is_static) {
+                const auto scene = guarded.enter();
+                for (const BodyId id : ids_of(ids)) scene->set_static(id, is_static);
+            },
+            "ids"_a, "static"_a)
+        .def(
+            "is_static", [](GuardedScene& guarded, std::int64_t id) { return guarded.enter()->is_static(id_of(id)); },
+            "id"_a)
+        .def(
+            "set_sensor",
+            [](GuardedScene& guarded, const Ids& ids, bool is_sensor) {
+                const auto scene = guarded.enter();
+                for (const BodyId id : ids_of(ids)) scene->set_sensor(id, is_sensor);
+            },
+            "ids"_a, "sensor"_a)
+        .def(
+            "is_sensor", [](GuardedScene& guarded, std::int64_t id) { return guarded.enter()->is_sensor(id_of(id)); },
+            "id"_a)
+        .def("set_pair_filter", &set_pair_filter, "callback"_a.none())
+        .def("clear", [](GuardedScene& guarded) { guarded.enter()->clear(); })
+        .def("save_state", &save_state)
+        .def("load_state", &load_state, "data"_a, "shapes"_a)
+        .def("begun", [](GuardedScene& guarded) { return columns_of(guarded.enter()->begun()); })
+        .def("ended", [](GuardedScene& guarded) { return columns_of(guarded.enter()->ended()); })
+        .def("touching", [](GuardedScene& guarded) { return columns_of(guarded.enter()->touching()); })
+        .def(
             "shape",
             [](GuardedScene& guarded, std::int64_t id) {
                 return std::const_pointer_cast<Shape>(guarded.enter()->shape(id_of(id)).shared_from_this());
@@ -425,6 +522,7 @@ void bind_scene(nb::module_& m) {
             "pairs", [](GuardedScene& guarded) { return pairs_array(guarded.enter()->pairs()); },
             nb::rv_policy::automatic)
         .def("raycast", &raycast, "origins"_a, "directions"_a, "max"_a, "wanted"_a.none())
+        .def("raycast_all", &raycast_all, "origin"_a, "direction"_a, "max"_a, "wanted"_a.none())
         .def("raycast_any", &raycast_any, "origins"_a, "directions"_a, "max"_a, "wanted"_a.none())
         .def(
             "closest_points",

@@ -134,6 +134,85 @@ TEST(ContactPatches, OfAPadHalfOverAnEdgeDependOnNoDivision) {
         }
 }
 
+/// A pose that a turn moves.
+Pose placed(const Pose& turn, const Pose& pose) {
+    Pose moved{{}, transform_point(turn, pose.translation)};
+    for (std::size_t k = 0; k < 9; ++k)
+        for (std::size_t i = 0; i < 3; ++i)
+            moved.rotation[k] += turn.rotation[3 * (k / 3) + i] * pose.rotation[3 * i + k % 3];
+    return moved;
+}
+
+/// Of a flat polygon, by its corners.
+Vec3 area_of(const std::vector<Vec3>& corners) {
+    Vec3 sum;
+    for (std::size_t k = 2; k < corners.size(); ++k)
+        sum += 0.5 * cross(corners[k - 1] - corners[0], corners[k] - corners[0]);
+    return sum;
+}
+
+TEST(ContactPatches, HullOfAPadIsItsOutlineWhateverTheDivision) {
+    const Mesh block = box_mesh({0.05, 0.05, 0.01}), pad = box_mesh({0.01, 0.01, 0.0025});
+    const Pose low{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, -0.01}}, at{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0.05, 0, 0.0024}};
+    const Pose turn = turned_about({1, 2, 3}, 0.8, {5, -3, 2});
+    for (const int n : {0, 3})
+        for (const int m : {0, 2, 5}) {
+            const auto a = made(divided(block, n)), b = made(divided(pad, m));
+            const auto patches = contact_patches(*a, placed(turn, low), *b, placed(turn, at));
+            ASSERT_EQ(patches.size(), 1u);
+            const ContactPatch& patch = patches[0];
+            EXPECT_GE(patch.hull.size(), 4u);
+            EXPECT_LE(patch.hull.size(), 8u) << "corners in a row are left out";
+            EXPECT_LT(length(area_of(patch.hull) - patch.area * patch.normal), 1e-7);
+            for (const Vec3& corner : patch.hull) EXPECT_NEAR(dot(corner - patch.centre, patch.normal), 0, 1e-12);
+            for (const double x : {0.04, 0.05})
+                for (const double y : {-0.01, 0.01}) {
+                    double nearest = 1;
+                    for (const Vec3& c : patch.hull) // seen along the normal, which an overhang tilts
+                        nearest = std::min(nearest, length(cross(c - transform_point(turn, {x, y, 0}), patch.normal)));
+                    EXPECT_LT(nearest, 1e-5) << x << ' ' << y;
+                }
+            const Vec3 about{0.3, 0.2, 0.1};
+            const std::vector<Wrench> basis = wrench_basis(patch, about);
+            ASSERT_EQ(basis.size(), patch.hull.size());
+            for (std::size_t i = 0; i < basis.size(); ++i) {
+                EXPECT_EQ(basis[i].force, patch.normal);
+                EXPECT_LT(length(basis[i].torque - cross(patch.hull[i] - about, patch.normal)), 1e-15);
+            }
+        }
+}
+
+// What lies under the floor, and where surfaces cross, has the same least and greatest places as the hulls have.
+TEST(ContactPatches, HullsOfARingReachAsFarAsTheRing) {
+    const auto floor = made(box_mesh({3, 3, 0.5}));
+    const Mesh ring = test::torus(24, 12, 1, 0.3, 0);
+    const auto body = made(ring);
+    const Pose under{{1, 0, 0, 0, 1, 0, 0, 0, 1}, {0, 0, -0.5}};
+    for (const double tilt : {0.0, 0.02}) {
+        Pose pose = turned_about({1, 0.3, 0}, tilt, {0.1, 0.2, 0});
+        pose.translation.z = -0.06 - lowest(ring, pose);
+        std::vector<Vec3> points;
+        for (const auto& t : ring.triangles)
+            for (std::size_t k = 0; k < 3; ++k) {
+                const Vec3 p = transform_point(pose, ring.vertices[t[k]]),
+                           q = transform_point(pose, ring.vertices[t[(k + 1) % 3]]);
+                if (p.z < 0) points.push_back(p);
+                if ((p.z < 0) != (q.z < 0)) points.push_back(p + (p.z / (p.z - q.z)) * (q - p));
+            }
+        const std::vector<ContactPatch> patches = contact_patches(*floor, under, *body, pose);
+        ASSERT_FALSE(patches.empty());
+        for (int i = 0; i < 32; ++i) {
+            const Vec3 way{std::cos(2 * pi * i / 32), std::sin(2 * pi * i / 32), 0};
+            double most = -1e9, told = -1e9;
+            for (const Vec3& p : points) most = std::max(most, dot(way, p));
+            for (const ContactPatch& patch : patches)
+                for (const Vec3& corner : patch.hull) told = std::max(told, dot(way, corner));
+            EXPECT_NEAR(told, most, 1e-4) << tilt << ", " << i;
+        }
+        for (const ContactPatch& patch : patches) EXPECT_GE(length(area_of(patch.hull)), patch.area * (1 - 1e-6));
+    }
+}
+
 // Bodies that are pressed into a flat floor are pushed straight up by what lies in it, and feel nothing along it.
 TEST(ContactPatches, OnAFlatFloorPushStraightUp) {
     std::mt19937 random(65);
