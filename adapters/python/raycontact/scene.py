@@ -3,7 +3,8 @@
 
 from __future__ import annotations
 
-from typing import Any, Callable, NamedTuple, Optional, Union, overload
+from collections.abc import Callable
+from typing import Any, NamedTuple, Optional, Union, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -482,7 +483,8 @@ class Scene:
         if batch.shape != ():
             raise InputError(f"raycast_all: takes one ray, not {batch.shape}; ask about one after the other")
         hits = self._core.raycast_all(starts, along, as_length(max, "max"), _wanted(wanted))
-        return BodyRayHits(*hits[0], hits[1])
+        columns = (*hits[0], hits[1])
+        return BodyRayHits(*columns)
 
     @overload
     def raycast_any(
