@@ -13,6 +13,10 @@ namespace raycontact {
 namespace {
 
 void check_inside(const Shape& shape, const char* what) {
+    if (shape.round() != nullptr)
+        throw InputError(
+            std::string(what)
+            + " is round: patches lie between flat faces; take distance() or separation(), or give a mesh");
     if (!shape.has_inside())
         throw InputError(std::string(what) + " has no inside (raycontact mesh says why): close it first");
 }

@@ -29,6 +29,14 @@ void check_length(double metres, const char* what) {
         throw InputError(std::string("time of impact: the ") + what + " is negative or not finite; give metres");
 }
 
+/// A ball that turns about its middle alone does not turn for others.
+RigidMotion without_rolling(const Shape& shape, RigidMotion motion) {
+    const Round* round = shape.round();
+    if (round != nullptr && round->from == round->to && rotated(motion.from.rotation, round->from) == motion.centre)
+        motion.angular_velocity = {};
+    return motion;
+}
+
 /// What a clearance may be off, metres. Throws InputError as checked_nearness().
 double coarse_tolerance(const Shape& a, const Shape& b, double tolerance) {
     const double fine = checked_nearness(a, b, 0, tolerance).tolerance;
@@ -175,20 +183,22 @@ std::optional<Impact> impact_at_start(const Shape& a, const Pose& pose_a, const 
 std::optional<Impact> impact_on_the_way(const Shape& a, const RigidMotion& motion_a, const Shape& b,
                                         const RigidMotion& motion_b, const Nearness& given, double begin,
                                         double latest) {
-    const MovingPair pair(a, motion_a, b, motion_b);
+    const MovingPair pair(a, without_rolling(a, motion_a), b, without_rolling(b, motion_b));
+    const double radius_a = radius_of(queried(a)), radius_b = radius_of(queried(b));
     Nearness near = given;
+    near.distance += radius_a + radius_b;
     for (const double time : {0.0, 1.0}) near.tolerance = std::max(near.tolerance, rounding_at(pair, time));
     const auto met = first_meeting(pair, near, begin, latest);
     if (!met) return std::nullopt;
     const auto moment = pair.at(met->time);
-    const Vec3 apart = rotated(pose_at(motion_b, met->time).rotation, met->point_b - met->point_a);
+    const Vec3 apart = rotated(pose_at(pair.motion(Side::b), met->time).rotation, met->point_b - met->point_a);
     return Impact{met->time,
-                  length(apart),
-                  moment.pair.to_world(met->point_a),
-                  moment.pair.to_world(met->point_b),
+                  std::max(length(apart) - radius_a - radius_b, 0.0),
+                  moment.pair.to_world(met->point_a) + radius_a * unit(apart),
+                  moment.pair.to_world(met->point_b) - radius_b * unit(apart),
                   unit(apart),
-                  a.triangle_index()[met->a],
-                  b.triangle_index()[met->b]};
+                  queried(a).mesh.triangle_index[met->a],
+                  queried(b).mesh.triangle_index[met->b]};
 }
 
 std::optional<Impact> time_of_impact(const Shape& a, const RigidMotion& motion_a, const Shape& b,
