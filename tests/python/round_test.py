@@ -52,11 +52,11 @@ def test_queries_of_round_shapes_are_closed_forms():
 
 def test_scenes_answer_with_round_shapes():
     scene = rc.Scene()
-    ground, block = scene.add(rc.plane()), scene.add(rc.box(1), rc.pose([3, 0, 0.5]))
+    ground, block = scene.add(rc.plane()), scene.add(rc.box(1), rc.pose([3, 0, 0.4]))
     ball = rc.ball(0.25)
     assert scene.overlaps(ball, rc.pose([0, 0, 0.3])).tolist() == []
     assert scene.overlaps(ball, rc.pose([2.4, 0, 0.2])).tolist() == [ground, block]
-    met = scene.sweep(ball, [rc.pose([0, 0, 0.5]), rc.pose([4, 0, 0.5])])
+    met = scene.sweep(ball, rc.pose([0, 0, 0.5]), rc.pose([4, 0, 0.5]))
     assert met.body == block and met.time == pytest.approx((2.5 - 0.25) / 4, abs=1e-6)
     with pytest.raises(rc.InputError, match="round"):
         scene.add(ball)
