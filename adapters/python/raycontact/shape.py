@@ -40,7 +40,9 @@ class Mass(NamedTuple):
 class Round(NamedTuple):
     """A ball, or a capsule: all points within `radius` of a segment. Body frame, metres.
 
-    start, end: (3,) float64, the ends of the segment; a ball's are the same.
+    start: (3,) float64, one end of the segment.
+    end: (3,) float64, its other end; a ball's is the same.
+    radius: metres.
     """
 
     start: NDArray[np.float64]
@@ -222,9 +224,9 @@ class Shape:
 def ball(radius: float) -> Shape:
     """A ball about the origin, radius in metres.
 
-    Queries take it as what it is, to rounding, not as a mesh: its triangles are -1 there, and its vertices are a picture
-    of it. `contact_patches`, `collide` and scenes take meshes alone so far and raise InputError for it; so does a radius
-    that is not from 1e-6 to 1e8 m.
+    Queries take it as what it is, to rounding: its triangles are -1 there, and its vertices are a picture of it.
+    `contact_patches`, `collide` and scenes take meshes alone so far and raise InputError for it; so does a radius that
+    is not from 1e-6 to 1e8 m.
     """
     return Shape._wrap(_core.make_ball(as_length(radius, "radius")))
 

@@ -7,11 +7,13 @@
 #include <raycontact/primitives.h>
 #include <raycontact/shape.h>
 
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -94,9 +96,9 @@ void bind_shape(nb::module_& m) {
         .def_prop_ro("vertex_areas", &view<float, 1, &Shape::vertex_areas>, nb::rv_policy::automatic)
         .def_prop_ro("exit_distances", &view<float, 1, &Shape::exit_distances>, nb::rv_policy::automatic)
         .def_prop_ro("round",
-                     [](const Shape& shape) -> nb::object {
+                     [](const Shape& shape) -> std::optional<nb::tuple> {
                          const Round* round = shape.round();
-                         if (round == nullptr) return nb::none();
+                         if (round == nullptr) return std::nullopt;
                          return nb::make_tuple(three(round->from), three(round->to), round->radius);
                      })
         .def_prop_ro("radius", &Shape::radius)
