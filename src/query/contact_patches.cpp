@@ -13,10 +13,7 @@ namespace raycontact {
 namespace {
 
 void check_inside(const Shape& shape, const char* what) {
-    if (shape.round() != nullptr)
-        throw InputError(
-            std::string(what)
-            + " is round: patches lie between flat faces; take distance() or separation(), or give a mesh");
+    check_is_mesh(shape, what);
     if (!shape.has_inside())
         throw InputError(std::string(what) + " has no inside (raycontact mesh says why): close it first");
 }

@@ -181,7 +181,8 @@ std::vector<Vec3> normals_of_deepest(std::vector<Contact> contacts) {
 Separation separation(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) {
     const FloatEnvironment environment;
     const auto apart = *distance(a, pose_a, b, pose_b);
-    if (apart.distance > 0) return {apart.distance, unit(apart.point_b - apart.point_a), apart.point_a, apart.point_b};
+    if (apart.distance > 0)
+        return {apart.distance, normal_between(a, pose_a, b, pose_b, apart), apart.point_a, apart.point_b};
     Exits exits(a, pose_a, b, pose_b);
     exits.follow_normals();
     if (!is_convex(a.data()) || !is_convex(b.data())) {

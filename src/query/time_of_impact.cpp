@@ -2,6 +2,7 @@
 #include "executor/float_environment.h"
 #include "query/checks.h"
 #include "query/impacts.h"
+#include "query/placed_round.h"
 
 #include <raycontact/error.h>
 
@@ -172,11 +173,17 @@ Nearness checked_nearness(const Shape& a, const Shape& b, double distance, doubl
     return {distance, tolerance > 0 ? tolerance : 1e-7 * std::min(a.data().diagonal, b.data().diagonal)};
 }
 
+Vec3 normal_between(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b, const Distance& apart) {
+    if (const Round* round = a.round()) return PlacedRound(*round, pose_a).nearest(apart.point_b).outward;
+    if (const Round* round = b.round()) return -PlacedRound(*round, pose_b).nearest(apart.point_a).outward;
+    return unit(apart.point_b - apart.point_a);
+}
+
 std::optional<Impact> impact_at_start(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
                                       const Nearness& near) {
     const auto found = distance(a, pose_a, b, pose_b, near.distance + near.tolerance);
     if (!found) return std::nullopt;
-    const Vec3 normal = found->distance > 0 ? unit(found->point_b - found->point_a) : Vec3{};
+    const Vec3 normal = found->distance > 0 ? normal_between(a, pose_a, b, pose_b, *found) : Vec3{};
     return Impact{0, found->distance, found->point_a, found->point_b, normal, found->triangle_a, found->triangle_b};
 }
 

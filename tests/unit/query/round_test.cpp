@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Balls and capsules in every query: against closed forms, and against points and triangles tried one by one.
+#include <raycontact/clash.h>
 #include <raycontact/collide.h>
 #include <raycontact/error.h>
 #include <raycontact/primitives.h>
@@ -409,6 +410,10 @@ TEST(RoundQueries, ABallFallsAndRolls) {
     const double height = 0.25 + 1e-6;
     const RigidMotion roll{at({-20, 0, height}), {40, 0, 0}, {0, 40 / 0.25, 0}, {}};
     EXPECT_FALSE(time_of_impact(*ball, roll, *plane, no_motion({}), 0, 1e-7));
+    // Poses on the way, from screw to screw.
+    std::vector<Pose> path;
+    for (int i = 0; i <= 40; ++i) path.push_back(pose_at(roll, i / 400.0));
+    EXPECT_FALSE(time_of_impact(*ball, path, *plane, std::vector<Pose>{{}}, 0, 1e-7));
     const ShapePtr roller = make_capsule(0.25, 1);
     RigidMotion rolling = roll;
     rolling.from.rotation = {1, 0, 0, 0, 0, 1, 0, -1, 0}; // its axis along y
@@ -439,6 +444,14 @@ TEST(RoundQueries, SeparationPartsThem) {
     EXPECT_NEAR(balls.normal.y, 1, 1e-6);
     EXPECT_NEAR(separation(*box, {}, *small, at({0.9, 0.3, 0.2})).distance, -0.35, 3e-6);
     EXPECT_NEAR(separation(*ball, {}, *small, at({0, 3, 4})).distance, 4.25, 1e-15);
+    // However near they are, the normal is that of the surfaces.
+    const Vec3 way{0.36, 0.48, 0.8};
+    EXPECT_LT(apart(separation(*ball, {}, *small, at((0.75 + 1e-15) * way)).normal, way), 1e-14);
+    for (const double gap : {2e-15, 1e-12}) {
+        const Pose above = at({0.3, -0.2, 3.25 + gap});
+        EXPECT_LT(apart(separation(*box, {}, *small, above).normal, {0, 0, 1}), 1e-14);
+        EXPECT_LT(apart(time_of_impact(*small, above, above, *box, {}, {})->normal, {0, 0, -1}), 1e-14);
+    }
 
     Random random(6);
     std::vector<ShapePtr> shapes = round_shapes();
@@ -530,6 +543,7 @@ TEST(RoundQueries, ContactsAreRefused) {
     EXPECT_THROW(collide(*ball, {}, *box, {}), InputError);
     EXPECT_NO_THROW(collide(*box, {}, *box, at({0.5, 0, 0})));
     EXPECT_THROW(contact_patches(*box, {}, *ball, {}), InputError);
+    EXPECT_THROW(overlap_volume(*box, {}, *ball, {}), InputError);
 }
 
 } // namespace
