@@ -424,6 +424,10 @@ BodyId Scene::add(std::shared_ptr<const Shape> shape, const Pose& pose) {
     const BodyId id = s.slots.next();
     const BodySlot slot = id.slot;
     if (!shape) throw InputError(name_of(id) + ": the shape is null");
+    if (shape->round() != nullptr)
+        throw InputError(name_of(id)
+                         + ": its shape is round, and contacts are of meshes alone; give a mesh, or ask by queries "
+                           "(overlaps, sweep, distance)");
     refuse_faulty(pose, id);
     // Room first: an add that fails then leaves no more than unused slots.
     if (slot >= s.bodies.size()) {

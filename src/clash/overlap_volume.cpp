@@ -82,6 +82,8 @@ double volume_below_both(const ShadowFace& f, const ShadowFace& g) {
 double overlap_volume(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) {
     check_placed(pose_a, "pose of the first mesh");
     check_placed(pose_b, "pose of the second mesh");
+    check_is_mesh(a, "the first mesh");
+    check_is_mesh(b, "the second mesh");
     const Placed in_a = place(a, pose_a, pose_a.translation), in_b = place(b, pose_b, pose_a.translation);
     const Box room{most(in_a.box.low, in_b.box.low), least(in_a.box.high, in_b.box.high)};
     const Vec3 size = room.high - room.low;

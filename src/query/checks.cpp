@@ -37,6 +37,12 @@ void check_placed(const Pose& pose, const char* what) {
     check_place(pose.translation, what);
 }
 
+void check_is_mesh(const Shape& shape, const char* what) {
+    if (shape.round() == nullptr) return;
+    throw InputError(std::string(what)
+                     + " is round, and this is about faces: give a mesh, or ask distance() or separation()");
+}
+
 Vec3 checked_direction(const Vec3& given) {
     if (!is_finite(given)) throw InputError("raycast: the direction has a coordinate that is not a finite number");
     const double largest = largest_of(given);

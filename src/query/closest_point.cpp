@@ -4,7 +4,10 @@
 #include "executor/float_environment.h"
 #include "query/checks.h"
 #include "query/nearest_triangle.h"
+#include "query/placed_round.h"
 #include "query/shape_pair.h"
+
+#include <cmath>
 
 namespace raycontact {
 
@@ -13,6 +16,11 @@ std::optional<ClosestPoint> closest_point(const Shape& shape, const Pose& pose, 
     check_placed(pose, "pose of the mesh");
     check_place(point, "closest_point: the point");
     check_reach(max, "closest_point");
+    if (const Round* round = shape.round()) {
+        const PlacedRound::Nearest nearest = PlacedRound(*round, pose).nearest(point);
+        const double metres = std::fabs(nearest.distance);
+        return metres <= max ? std::optional(ClosestPoint{Shape::no_triangle, nearest.point, metres}) : std::nullopt;
+    }
     const Vec3 sought = in_body_frame(pose, inverse_of(pose.rotation), point);
     // What is there exactly is found; `max` decides at the end.
     const auto nearest = nearest_triangle(shape.data(), sought, max * (1 + 1e-12));

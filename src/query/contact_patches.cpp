@@ -13,6 +13,7 @@ namespace raycontact {
 namespace {
 
 void check_inside(const Shape& shape, const char* what) {
+    check_is_mesh(shape, what);
     if (!shape.has_inside())
         throw InputError(std::string(what) + " has no inside (raycontact mesh says why): close it first");
 }

@@ -65,7 +65,7 @@ private:
 } // namespace
 
 Vec3 HullExits::farthest(const Vec3& way) const {
-    return farthest_of(a_, way) - farthest_of(b_, Vec3{} - way);
+    return farthest_of(a_, way) - farthest_of(b_, Vec3{} - way) + radius_ * way;
 }
 
 // Branch and bound over directions, from the eight of an octahedron's faces.

@@ -19,8 +19,9 @@ struct HullExit {
 /// 1970).
 class HullExits {
 public:
-    /// The second has to go.
-    HullExits(std::vector<Vec3> first, std::vector<Vec3> second) : a_(std::move(first)), b_(std::move(second)) {}
+    /// The second has to go. radius: of both together, if they are round, metres.
+    HullExits(std::vector<Vec3> first, std::vector<Vec3> second, double radius)
+        : a_(std::move(first)), b_(std::move(second)), radius_(radius) {}
 
     /// way: unit. Negative where they are parted already.
     double along(const Vec3& way) const { return dot(farthest(way), way); }
@@ -28,9 +29,10 @@ public:
     HullExit shortest(double share, double size) const;
 
 private:
-    /// Of the differences of a point of a and one of b that which is farthest along a direction.
+    /// Of the differences of a point of a and one of b that which is farthest along a direction, which is unit.
     Vec3 farthest(const Vec3& way) const;
     std::vector<Vec3> a_, b_;
+    double radius_;
 };
 
 } // namespace raycontact

@@ -14,6 +14,9 @@ RigidMotion checked_motion(const RigidMotion& given, const char* what);
 /// Of two shapes, as time_of_impact() is asked. Throws InputError as that does.
 Nearness checked_nearness(const Shape& a, const Shape& b, double distance, double tolerance);
 
+/// From a to b, of two that are apart; unit, world frame. Of round bodies by their cores, which do not come near.
+Vec3 normal_between(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b, const Distance& apart);
+
 /// Decided exactly.
 std::optional<Impact> impact_at_start(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
                                       const Nearness& near);

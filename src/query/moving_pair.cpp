@@ -27,15 +27,15 @@ MovingPair::MovingPair(const Shape& a, const RigidMotion& motion_a, const Shape&
         const auto around = [&](const Vec3& v) { return length(cross(spin, v)); };
         const double most = std::max(around(before), around(before + velocity));
         const Rate change{0, rate > 0 ? most + 2 * around(velocity) / rate : 0};
-        return Seen{rotated_back(own.from.rotation, own.centre) - shape.data().centre,
+        return Seen{rotated_back(own.from.rotation, own.centre) - queried(shape).centre,
                     rotated_back(own.from.rotation, own.angular_velocity),
                     {change, {0, 3 * around(velocity) + rate * most}}};
     };
     seen_a_ = seen(a, motion_a, motion_b);
     seen_b_ = seen(b, motion_b, motion_a);
-    const double bends = std::max(bend(Side::a, {}, a.data().reach).change.along(most_across(Side::b)),
-                                  bend(Side::b, {}, b.data().reach).change.along(most_across(Side::a)));
-    turning_ = std::min(turning_, std::sqrt(bends / std::min(a.data().reach, b.data().reach)));
+    const double bends = std::max(bend(Side::a, {}, queried(a).reach).change.along(most_across(Side::b)),
+                                  bend(Side::b, {}, queried(b).reach).change.along(most_across(Side::a)));
+    turning_ = std::min(turning_, std::sqrt(bends / std::min(queried(a).reach, queried(b).reach)));
 }
 
 // With w the spin of the own body, v that of the other and q the point from the own centre, the frame of the other sees
@@ -65,7 +65,7 @@ Vec3 MovingPair::Moment::change(Side side, const Vec3& point) const {
 MovingPair::Moment MovingPair::at(double time) const {
     const Pose pose_a = pose_at(motion_a_, time), pose_b = pose_at(motion_b_, time);
     Moment moment{time, ShapePair(a_, pose_a, b_, pose_b), {}, {}, {}, {}, {}, {}};
-    const Vec3 origin = transform_point(pose_b, b_.data().centre);
+    const Vec3 origin = transform_point(pose_b, queried(b_).centre);
     const auto in_b = [&](const Vec3& v) { return rotated_back(pose_b.rotation, v); };
     moment.centre_a = in_b(centre_of(motion_a_) + time * motion_a_.velocity - origin);
     moment.centre_b = in_b(centre_of(motion_b_) + time * motion_b_.velocity - origin);

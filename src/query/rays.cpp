@@ -5,6 +5,7 @@
 #include "mesh/exact_vector.h"
 #include "mesh/predicates.h"
 #include "query/checks.h"
+#include "query/placed_round.h"
 #include "query/shape_pair.h"
 #include "shape/mesh_rays.h"
 
@@ -160,19 +161,25 @@ private:
     FaceHit best_;
 };
 
-struct PlacedRay {
-    Vec3 direction; ///< world, unit
-    FaceHit hit;
-};
-
-PlacedRay cast(const Shape& shape, const Pose& pose, const Vec3& origin, const Vec3& direction, double max, bool any) {
+/// Unit, of a ray that is sound.
+Vec3 checked_ray(const Pose& pose, const Vec3& origin, const Vec3& direction, double max) {
     check_placed(pose, "pose of the mesh");
     check_place(origin, "raycast: the origin");
     check_reach(max, "raycast");
-    const Vec3 along = checked_direction(direction);
+    return checked_direction(direction);
+}
+
+FaceHit cast(const Shape& shape, const Pose& pose, const Vec3& origin, const Vec3& along, double max, bool any) {
     const std::array<double, 9> back = inverse_of(pose.rotation);
     const BodyRay ray{own_point(rotated(back, origin - pose.translation)), own_point(rotated(back, along))};
-    return {along, Caster(shape, ray, max, any).cast()};
+    return Caster(shape, ray, max, any).cast();
+}
+
+std::optional<RayHit> cast_at_round(const PlacedRound& round, const Vec3& origin, const Vec3& along, double max) {
+    const auto metres = round.meet(origin, along);
+    if (!metres || *metres > max) return std::nullopt;
+    const Vec3 point = origin + *metres * along;
+    return RayHit{Shape::no_triangle, *metres, round.nearest(point).outward, point};
 }
 
 } // namespace
@@ -180,18 +187,22 @@ PlacedRay cast(const Shape& shape, const Pose& pose, const Vec3& origin, const V
 std::optional<RayHit> raycast(const Shape& shape, const Pose& pose, const Vec3& origin, const Vec3& direction,
                               double max) {
     const FloatEnvironment environment;
-    const PlacedRay ray = cast(shape, pose, origin, direction, max, false);
-    if (ray.hit.face == NONE) return std::nullopt;
+    const Vec3 along = checked_ray(pose, origin, direction, max);
+    if (shape.round() != nullptr) return cast_at_round({*shape.round(), pose}, origin, along, max);
+    const FaceHit hit = cast(shape, pose, origin, along, max, false);
+    if (hit.face == NONE) return std::nullopt;
     const ShapeData& mesh = shape.data();
-    const auto [a, b, c] = mesh.mesh.triangles[ray.hit.face];
+    const auto [a, b, c] = mesh.mesh.triangles[hit.face];
     const Vec3 normal = along_normal(mesh.file_vertex(a), mesh.file_vertex(b), mesh.file_vertex(c));
-    return RayHit{shape.triangle_index()[ray.hit.face], ray.hit.distance, unit(rotated(pose.rotation, normal)),
-                  origin + ray.hit.distance * ray.direction};
+    return RayHit{shape.triangle_index()[hit.face], hit.distance, unit(rotated(pose.rotation, normal)),
+                  origin + hit.distance * along};
 }
 
 bool raycast_any(const Shape& shape, const Pose& pose, const Vec3& origin, const Vec3& direction, double max) {
     const FloatEnvironment environment;
-    return cast(shape, pose, origin, direction, max, true).hit.face != NONE;
+    const Vec3 along = checked_ray(pose, origin, direction, max);
+    if (shape.round() != nullptr) return cast_at_round({*shape.round(), pose}, origin, along, max).has_value();
+    return cast(shape, pose, origin, along, max, true).face != NONE;
 }
 
 } // namespace raycontact

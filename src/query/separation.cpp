@@ -5,6 +5,8 @@
 #include "query/checks.h"
 #include "query/hull_exit.h"
 #include "query/impacts.h"
+#include "query/inside.h"
+#include "query/surfaces.h"
 
 #include <raycontact/collide.h>
 
@@ -28,6 +30,7 @@ constexpr std::size_t most_contacts = 8;
 
 /// Turns inward at no edge, so that no way out is shorter than that of the hull.
 bool is_convex(const ShapeData& shape) {
+    if (shape.round) return true;
     if (shape.component_vertices.size() != 1 || !shape.rays_end) return false;
     for (std::uint32_t t = 0; t < shape.mesh.triangles.size(); ++t) {
         const Vec3 normal{shape.face_normals[t].x, shape.face_normals[t].y, shape.face_normals[t].z};
@@ -40,11 +43,29 @@ bool is_convex(const ShapeData& shape) {
     return true;
 }
 
+// Of a round shape those of its core.
 std::vector<Vec3> placed_vertices(const Shape& shape, const Pose& pose, const Vec3& origin) {
+    const ShapeData& mesh = queried(shape);
     std::vector<Vec3> points;
-    for (const Vec3& v : shape.file_vertices())
-        points.push_back(rotated(pose.rotation, v) + (pose.translation - origin));
+    for (std::uint32_t v = 0; v < mesh.mesh.vertices.size(); ++v)
+        points.push_back(rotated(pose.rotation, mesh.file_vertex(v)) + (pose.translation - origin));
     return points;
+}
+
+// Of a round body one contact: out where its core is nearest to the surface of the other. None where it is on it.
+std::vector<Contact> contacts_of(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) {
+    if (a.round() == nullptr && b.round() == nullptr) return collide(a, pose_a, b, pose_b);
+    const ShapePair pair(a, pose_a, b, pose_b);
+    const auto closest = *closest_triangles(pair, any_distance);
+    const Vec3 apart = rotated(pose_b.rotation, closest.point_b - closest.point_a);
+    const bool is_inside = vertex_inside(pair) || vertex_inside(ShapePair(b, pose_b, a, pose_a));
+    const double depth = pair.radius() + (is_inside ? length(apart) : -length(apart));
+    if (!(depth > 0) || apart == Vec3{}) return {};
+    const Vec3 normal = (is_inside ? -1.0 : 1.0) * unit(apart);
+    Contact contact;
+    contact.normal = {static_cast<float>(normal.x), static_cast<float>(normal.y), static_cast<float>(normal.z)};
+    contact.depth = static_cast<float>(depth);
+    return {contact};
 }
 
 /// Ways by which the second mesh leaves the first; at the beginning that out of their hulls.
@@ -52,7 +73,8 @@ class Exits {
 public:
     Exits(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b)
         : a_(a), b_(b), stays_(no_motion(pose_a)), begin_(nearest_rigid_pose(pose_b)),
-          hulls_(placed_vertices(a, pose_a, pose_b.translation), placed_vertices(b, pose_b, pose_b.translation)),
+          hulls_(placed_vertices(a, pose_a, pose_b.translation), placed_vertices(b, pose_b, pose_b.translation),
+                 radius_of(queried(a)) + radius_of(queried(b))),
           gap_(gap_share * std::min(a.data().diagonal, b.data().diagonal)) {
         const HullExit exit = hulls_.shortest(share, std::max(a.data().diagonal, b.data().diagonal));
         const double metres = std::max(exit.metres, 0.0) + 2 * gap_;
@@ -78,7 +100,7 @@ public:
                 if (length(pushed) < best_.metres) try_back(unit(pushed), length(pushed));
                 return;
             }
-            contacts = collide(a_, stays_.from, b_, place(pushed));
+            contacts = contacts_of(a_, stays_.from, b_, place(pushed));
         }
     }
 
@@ -159,11 +181,12 @@ std::vector<Vec3> normals_of_deepest(std::vector<Contact> contacts) {
 Separation separation(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b) {
     const FloatEnvironment environment;
     const auto apart = *distance(a, pose_a, b, pose_b);
-    if (apart.distance > 0) return {apart.distance, unit(apart.point_b - apart.point_a), apart.point_a, apart.point_b};
+    if (apart.distance > 0)
+        return {apart.distance, normal_between(a, pose_a, b, pose_b, apart), apart.point_a, apart.point_b};
     Exits exits(a, pose_a, b, pose_b);
     exits.follow_normals();
     if (!is_convex(a.data()) || !is_convex(b.data())) {
-        const std::vector<Contact> contacts = collide(a, pose_a, b, pose_b);
+        const std::vector<Contact> contacts = contacts_of(a, pose_a, b, pose_b);
         exits.try_pushes(contacts);
         for (const Vec3& normal : normals_of_deepest(contacts)) exits.try_way(normal);
         for (const double x : {-1, 0, 1})

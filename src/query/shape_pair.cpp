@@ -78,7 +78,7 @@ struct ShapePair::Poses {
 };
 
 ShapePair::ShapePair(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b)
-    : ShapePair(a.data(), b.data(), Poses(pose_a, pose_b)) {}
+    : ShapePair(queried(a), queried(b), Poses(pose_a, pose_b)) {}
 
 // Some twenty roundings of these sizes lie behind a rough point of a; b's has one.
 ShapePair::ShapePair(const ShapeData& a, const ShapeData& b, const Poses& poses)

@@ -41,7 +41,8 @@ private:
     Placing placing_;
 };
 
-/// Two placed shapes. Rough points lie in the centred frame of b; where both poses are equal, they count as none.
+/// Two placed shapes; of round ones the cores. Rough points lie in the centred frame of b; where both poses are equal,
+/// they count as none.
 class ShapePair {
 public:
     ShapePair(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b);
@@ -60,6 +61,8 @@ public:
     const Pose& a_in_b() const { return a_in_b_; }
     /// Out of the centred frame of `side` into that of the other one.
     const Pose& out_of(Side side) const { return side == Side::a ? a_in_b_ : b_in_a_; }
+    /// How far the bodies reach around what is walked here, together: 0 of meshes. Metres.
+    double radius() const { return radius_of(a()) + radius_of(b().shape()); }
     Vec3 to_world(const Vec3& rough) const { return transform_point(b_in_world_, rough); }
 
     /// About a box of the other tree, in the frame of `side`.

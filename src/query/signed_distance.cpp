@@ -9,6 +9,7 @@
 #include "query/checks.h"
 #include "query/inside.h"
 #include "query/nearest_triangle.h"
+#include "query/placed_round.h"
 #include "query/shape_pair.h"
 
 #include <algorithm>
@@ -103,10 +104,18 @@ std::vector<SignedDistance> signed_distance(const Shape& shape, const Pose& pose
     for (const Vec3& point : points) check_place(point, "signed_distance: a point");
     Executor executor(threads_for(points.size(), threads));
     if (points.empty()) return {};
+    std::vector<SignedDistance> found(points.size());
+    if (const Round* round = shape.round()) {
+        const PlacedRound placed(*round, pose);
+        std::ranges::transform(points, found.begin(), [&](const Vec3& point) {
+            const auto [metres, nearest, outward] = placed.nearest(point);
+            return SignedDistance{metres, Shape::no_triangle, nearest, outward};
+        });
+        return found;
+    }
     constexpr std::uint32_t in_a_row = 1024;
     const std::vector<std::uint32_t> order = along_curve(points);
     const std::array<double, 9> inverse = inverse_of(pose.rotation);
-    std::vector<SignedDistance> found(points.size());
     executor.each((points.size() + in_a_row - 1) / in_a_row, 1, [&](std::uint32_t row) {
         SignedDistances distances(shape, pose);
         const std::size_t first = std::size_t{row} * in_a_row;

@@ -206,7 +206,12 @@ private:
     bool look(std::uint32_t a, const Face& face, std::uint32_t b, double box_square) {
         if (!(box_square < squared_) || pair_.b().shape().is_flat(b)) return false;
         Span span{squared_, {}, {}};
-        shorten_between(span, face, Face(pair_.corners_of_b(b)));
+        const Face other(pair_.corners_of_b(b));
+        shorten_between(span, face, other);
+        if (pair_.radius() > 0) { // cores cross faces where bodies meet
+            if (const auto point = crossing_of(face, other)) span.shorten(*point, *point);
+            if (const auto point = crossing_of(other, face)) span.shorten(*point, *point);
+        }
         if (!(span.squared < squared_)) return false;
         squared_ = span.squared;
         found_ = {a, b, span.a, span.b};

@@ -2,6 +2,7 @@
 #include "executor/float_environment.h"
 #include "query/checks.h"
 #include "query/impacts.h"
+#include "query/placed_round.h"
 
 #include <raycontact/error.h>
 
@@ -27,6 +28,14 @@ double rounding_at(const MovingPair& pair, double time) {
 void check_length(double metres, const char* what) {
     if (!(metres >= 0 && std::isfinite(metres)))
         throw InputError(std::string("time of impact: the ") + what + " is negative or not finite; give metres");
+}
+
+/// A ball that turns about its middle alone does not turn for others.
+RigidMotion without_rolling(const Shape& shape, RigidMotion motion) {
+    const Round* round = shape.round();
+    if (round != nullptr && round->from == round->to && rotated(motion.from.rotation, round->from) == motion.centre)
+        motion.angular_velocity = {};
+    return motion;
 }
 
 /// What a clearance may be off, metres. Throws InputError as checked_nearness().
@@ -164,31 +173,39 @@ Nearness checked_nearness(const Shape& a, const Shape& b, double distance, doubl
     return {distance, tolerance > 0 ? tolerance : 1e-7 * std::min(a.data().diagonal, b.data().diagonal)};
 }
 
+Vec3 normal_between(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b, const Distance& apart) {
+    if (const Round* round = a.round()) return PlacedRound(*round, pose_a).nearest(apart.point_b).outward;
+    if (const Round* round = b.round()) return -PlacedRound(*round, pose_b).nearest(apart.point_a).outward;
+    return unit(apart.point_b - apart.point_a);
+}
+
 std::optional<Impact> impact_at_start(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
                                       const Nearness& near) {
     const auto found = distance(a, pose_a, b, pose_b, near.distance + near.tolerance);
     if (!found) return std::nullopt;
-    const Vec3 normal = found->distance > 0 ? unit(found->point_b - found->point_a) : Vec3{};
+    const Vec3 normal = found->distance > 0 ? normal_between(a, pose_a, b, pose_b, *found) : Vec3{};
     return Impact{0, found->distance, found->point_a, found->point_b, normal, found->triangle_a, found->triangle_b};
 }
 
 std::optional<Impact> impact_on_the_way(const Shape& a, const RigidMotion& motion_a, const Shape& b,
                                         const RigidMotion& motion_b, const Nearness& given, double begin,
                                         double latest) {
-    const MovingPair pair(a, motion_a, b, motion_b);
+    const MovingPair pair(a, without_rolling(a, motion_a), b, without_rolling(b, motion_b));
+    const double radius_a = radius_of(queried(a)), radius_b = radius_of(queried(b));
     Nearness near = given;
+    near.distance += radius_a + radius_b;
     for (const double time : {0.0, 1.0}) near.tolerance = std::max(near.tolerance, rounding_at(pair, time));
     const auto met = first_meeting(pair, near, begin, latest);
     if (!met) return std::nullopt;
     const auto moment = pair.at(met->time);
-    const Vec3 apart = rotated(pose_at(motion_b, met->time).rotation, met->point_b - met->point_a);
+    const Vec3 apart = rotated(pose_at(pair.motion(Side::b), met->time).rotation, met->point_b - met->point_a);
     return Impact{met->time,
-                  length(apart),
-                  moment.pair.to_world(met->point_a),
-                  moment.pair.to_world(met->point_b),
+                  std::max(length(apart) - radius_a - radius_b, 0.0),
+                  moment.pair.to_world(met->point_a) + radius_a * unit(apart),
+                  moment.pair.to_world(met->point_b) - radius_b * unit(apart),
                   unit(apart),
-                  a.triangle_index()[met->a],
-                  b.triangle_index()[met->b]};
+                  queried(a).mesh.triangle_index[met->a],
+                  queried(b).mesh.triangle_index[met->b]};
 }
 
 std::optional<Impact> time_of_impact(const Shape& a, const RigidMotion& motion_a, const Shape& b,

@@ -18,13 +18,18 @@ void shorten_between_edges(Span& span, const Vec3& p, const Vec3& u, const Vec3&
     span.shorten(p + ratio(uv * t - uw, uu) * u, q + t * v);
 }
 
+// Seen along its normal.
+bool is_before(const Face& face, const Vec3& p) {
+    for (std::size_t k = 0; k < 3; ++k)
+        if (dot(face.normal, cross(face.edge[k], p - face.corner[k])) < 0) return false;
+    return true;
+}
+
 // The point within the face that is closest to p, unless an edge is closer or it is no nearer than `least`, m^2.
 std::optional<Vec3> within(const Face& face, const Vec3& p, double least) {
     const Vec3 off = p - face.corner[0];
     const double height = dot(face.normal, off), size2 = dot(face.normal, face.normal);
-    if (!(height * height < least * size2)) return std::nullopt;
-    for (std::size_t k = 0; k < 3; ++k)
-        if (dot(face.normal, cross(face.edge[k], p - face.corner[k])) < 0) return std::nullopt;
+    if (!(height * height < least * size2) || !is_before(face, p)) return std::nullopt;
     return p - (height / size2) * face.normal;
 }
 
@@ -42,6 +47,14 @@ void shorten_between(Span& span, const Face& p, const Face& q) {
         if (const auto point = within(q, corner, span.squared)) span.shorten(corner, *point);
     for (const Vec3& corner : q.corner)
         if (const auto point = within(p, corner, span.squared)) span.shorten(*point, corner);
+}
+
+std::optional<Vec3> crossing_of(const Face& segment, const Face& face) {
+    const double from = dot(face.normal, segment.corner[0] - face.corner[0]);
+    const double to = dot(face.normal, segment.corner[1] - face.corner[0]);
+    if (!(from * to < 0)) return std::nullopt;
+    const Vec3 point = segment.corner[0] + (from / (from - to)) * segment.edge[0];
+    return is_before(face, point) ? std::optional(point) : std::nullopt;
 }
 
 } // namespace raycontact

@@ -34,4 +34,8 @@ struct Face {
 /// parallel to some 1e-8 the distance is within 1e-8 of their length.
 void shorten_between(Span& span, const Face& p, const Face& q);
 
+/// Where the segment of a round shape, the corners 0 and 1 of a triangle without an area, goes through a face; of its
+/// edges shorten_between() knows.
+std::optional<Vec3> crossing_of(const Face& segment, const Face& face);
+
 } // namespace raycontact

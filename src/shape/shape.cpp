@@ -181,6 +181,9 @@ const MeshReport& Shape::report() const noexcept {
 bool Shape::has_inside() const noexcept {
     return data_->header.closed != 0;
 }
+const Round* Shape::round() const noexcept {
+    return data_->round ? &*data_->round : nullptr;
+}
 std::span<const Vec3> Shape::vertices() const noexcept {
     return data_->mesh.vertices;
 }
@@ -236,7 +239,9 @@ std::uint64_t Shape::memory_bytes() const {
            + bytes(d.component_vertices) + bytes(d.components) + bytes(d.exit_distances) + bytes(d.neighbours)
            + bytes(d.triangle_blocks) + bytes(d.file_vertices) + bytes(d.slivers.triangle_blocks)
            + bytes(d.slivers.nodes) + bytes(d.flat) + bytes(d.faces) + bytes(d.nodes) + bytes(d.vertex_blocks)
-           + bytes(d.clusters) + bytes(d.face_normals) + (is_prepared() ? accelerators_of(*this)->bytes() : 0);
+           + bytes(d.clusters) + bytes(d.face_normals)
+           + (d.core ? sizeof d + bytes(d.core->nodes) + bytes(d.core->triangle_blocks) : 0)
+           + (is_prepared() ? accelerators_of(*this)->bytes() : 0);
 }
 
 } // namespace raycontact

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace raycontact {
@@ -64,6 +65,9 @@ struct Shape::Data : TriangleTree {
     /// Of a clearance grid of one cell, until there are Accelerators: all that is known is outside of the box.
     std::vector<kernels::uint> clearances{0};
     kernels::ShapeHeader header{};
+    std::optional<Round> round; ///< what it is instead of its mesh; of a core what that is the segment of
+    /// Of a round shape its segment, as a triangle without an area that has no number in a file. See queried().
+    std::shared_ptr<const Data> core;
 
     /// Enters where the kernel arrays are, once they are all there.
     void set_places() {
@@ -89,5 +93,14 @@ struct Shape::Data : TriangleTree {
     std::shared_ptr<AcceleratorSlot> accelerators; ///< see accelerators_of()
 };
 using ShapeData = Shape::Data;
+
+/// What queries walk: of a round shape its core, which lies `radius_of` within it.
+inline const ShapeData& queried(const Shape& shape) {
+    return shape.data().core ? *shape.data().core : shape.data();
+}
+/// Of a round shape, or its core; 0 of meshes. Metres.
+inline double radius_of(const ShapeData& shape) {
+    return shape.round ? shape.round->radius : 0;
+}
 
 } // namespace raycontact

@@ -7,6 +7,7 @@
 #include <round.h>
 #include <scenes/models/model.h>
 #include <scenes/random.h>
+#include <vectors.h>
 
 #include <BulletCollision/CollisionShapes/btTriangleMesh.h>
 
@@ -18,12 +19,21 @@
 namespace raycontact::test {
 namespace {
 
-std::vector<bullet::RoundContact> contacts(const std::shared_ptr<const Shape>& mesh, const btCollisionShape& shape,
-                                           const btTransform& pose, double reach = 0,
-                                           const btTransform& mesh_pose = at(0, 0, 0)) {
-    std::vector<bullet::RoundContact> found;
-    const std::vector<bullet::Obstacle> obstacles{{bullet::Surface(*mesh), mesh_pose, mesh_pose}};
-    bullet::round_contacts(bullet::round_of(shape), pose, {}, obstacles, reach, found);
+/// In Bullet's terms.
+struct Found {
+    btVector3 point, normal;
+    btScalar distance;
+};
+
+std::vector<Found> contacts(const std::shared_ptr<const Shape>& mesh, const btCollisionShape& shape,
+                            const btTransform& pose, double reach = 0, const btTransform& mesh_pose = at(0, 0, 0)) {
+    const Pose place = bullet::to_pose(mesh_pose);
+    const std::vector<Obstacle> obstacles{{Facets(*mesh), place, place}};
+    std::vector<RoundContact> rounds;
+    round_contacts(bullet::round_of(shape), bullet::to_pose(pose), {}, obstacles, reach, rounds);
+    std::vector<Found> found;
+    for (const RoundContact& c : rounds)
+        found.push_back({bullet::to_bullet(c.point), bullet::to_bullet(c.normal), btScalar(c.distance)});
     return found;
 }
 

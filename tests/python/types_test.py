@@ -114,6 +114,7 @@ rc.pose([0, 0, 1], Turn())
 
 for name, sample in rc.samples().items():
     assert_type(sample, rc.Mesh)
+rc.collide(rc.ball(0.5), rc.capsule(1, 2)), rc.plane(), rc.plane(10, thickness=1)
 rc.box(2), rc.box((1, 2, 3)), rc.heightfield(np.zeros((3, 3)), 0.1, -1), rc.heightfield([[1, 2], [3, 4]], (1, 2), 0)
 rc.box("big")  # wrong
 

@@ -125,25 +125,32 @@ btScalar LeafPair::margin(const Settings& settings) const {
 void add_rounds(std::span<const RoundPair> pairs, btScalar near_by, bool ahead) {
     static thread_local std::vector<RoundContact> found;
     static thread_local std::vector<Obstacle> obstacles;
+    static thread_local std::vector<FieldFacets> fields; // obstacles point at them
     obstacles.clear();
+    fields.clear();
+    fields.reserve(pairs.size());
     for (const RoundPair& p : pairs) {
         const Leaf& mesh = p.pair.mesh();
         const bool is_field = mesh.kind == Kind::field;
-        const Surface surface = is_field ? Surface(static_cast<const btHeightfieldTerrainShape&>(*mesh.shape))
-                                         : Surface(*mesh.converted.shape);
-        obstacles.push_back({surface, mesh.pose, mesh.next, is_field || p.pair.is_two_sided(), double(p.margin)});
+        const Facets surface =
+            is_field ? Facets(fields.emplace_back(static_cast<const btHeightfieldTerrainShape&>(*mesh.shape)))
+                     : Facets(*mesh.converted.shape);
+        obstacles.push_back(
+            {surface, to_pose(mesh.pose), to_pose(mesh.next), is_field || p.pair.is_two_sided(), double(p.margin)});
     }
     const Leaf& ball = pairs[0].pair.other();
     const Round round = round_of(*ball.shape);
-    round_contacts(round, ball.pose, ahead ? std::optional(ball.next) : std::nullopt, obstacles, double(near_by),
-                   found);
+    round_contacts(round, to_pose(ball.pose), ahead ? std::optional(to_pose(ball.next)) : std::nullopt, obstacles,
+                   double(near_by), found);
     for (const RoundContact& f : found) {
         const auto& [pair, margin, out] = pairs[f.obstacle];
-        Candidate c = pair.candidate(false, f.place, f.point, f.point + f.normal * f.distance, -f.normal, f.distance);
+        const btVector3 point = to_bullet(f.point), normal = to_bullet(f.normal);
+        const auto distance = btScalar(f.distance);
+        Candidate c = pair.candidate(false, f.place, point, point + normal * distance, -normal, distance);
         c.triangle = static_cast<int>(f.triangle);
-        (pair.mesh_is_0() ? c.name0 : c.name1) = f.name;
+        (pair.mesh_is_0() ? c.name0 : c.name1) = {f.name[0], f.name[1]};
         c.reach = pair.smaller_diagonal();
-        c.speculative = ahead && f.distance > 0;
+        c.speculative = ahead && distance > 0;
         out->push_back(c);
     }
 }

@@ -57,7 +57,7 @@ from .scene import (
     SceneState,
     Touches,
 )  # fmt: skip
-from .shape import Mass, Shape, SheetWarning
+from .shape import Mass, Round, Shape, SheetWarning, ball, capsule, plane
 from .show import show
 
 __version__: str = _core.version
@@ -67,9 +67,10 @@ __all__ = [
     "Clashes", "ClosestPoint", "CollisionManager", "ContactPatches", "Contacts", "DeviceInfo", "Distance",
     "FeatureKind", "Impact", "InputError", "LostContacts", "Mass", "Mesh", "MeshReport", "OneBodyClosestPoint",
     "OneBodyRayHit", "OneClosestPoint", "OneDistance", "OneRayHit", "OneSignedDistance", "PairContacts",
-    "PathClearance", "RayHit", "RecordedStep", "Recorder", "Recording", "Scene", "SceneState", "Separation", "Shape",
-    "SheetWarning", "SignedDistance", "StepStats", "Touches", "box", "clash", "closest_point", "collide",
-    "common_point", "contact_patches", "contains", "distance", "distance_grid", "heightfield", "intersects",
-    "list_devices", "load_assembly", "nearest_rigid", "path_clearance", "pose", "pose_from_quaternion", "raycast",
-    "raycast_any", "samples", "separation", "show", "signed_distance", "time_of_impact", "wrench_cone",
+    "PathClearance", "RayHit", "RecordedStep", "Recorder", "Recording", "Round", "Scene", "SceneState", "Separation",
+    "Shape", "SheetWarning", "SignedDistance", "StepStats", "Touches", "ball", "box", "capsule", "clash",
+    "closest_point", "collide", "common_point", "contact_patches", "contains", "distance", "distance_grid",
+    "heightfield", "intersects", "list_devices", "load_assembly", "nearest_rigid", "path_clearance", "plane", "pose",
+    "pose_from_quaternion", "raycast", "raycast_any", "samples", "separation", "show", "signed_distance",
+    "time_of_impact", "wrench_cone",
 ]  # fmt: skip

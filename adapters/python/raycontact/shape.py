@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _core
-from ._arrays import ScaleLike, as_count
+from ._arrays import ScaleLike, as_count, as_length
 from ._core import InputError, MeshReport
 from .mesh import Mesh, MeshLike
 
@@ -35,6 +35,19 @@ class Mass(NamedTuple):
     volume: float
     centre: NDArray[np.float64]
     inertia: NDArray[np.float64]
+
+
+class Round(NamedTuple):
+    """A ball, or a capsule: all points within `radius` of a segment. Body frame, metres.
+
+    start: (3,) float64, one end of the segment.
+    end: (3,) float64, its other end; a ball's is the same.
+    radius: metres.
+    """
+
+    start: NDArray[np.float64]
+    end: NDArray[np.float64]
+    radius: float
 
 
 class Shape:
@@ -119,6 +132,12 @@ class Shape:
         return self._core.has_inside
 
     @property
+    def round(self) -> Optional[Round]:
+        """What `ball` and `capsule` made; None for meshes. Queries go by it, the mesh is a picture of it."""
+        made = self._core.round
+        return None if made is None else Round(np.array(made[0]), np.array(made[1]), made[2])
+
+    @property
     def vertices(self) -> NDArray[np.float64]:
         """(n, 3) float64, metres, body frame: distinct positions, as the mesh had them. Not writable."""
         return self._core.vertices
@@ -176,7 +195,7 @@ class Shape:
     @property
     def mass(self) -> Mass:
         """By volume integrals over the closed mesh, for unit density; the volume is `report.volume`. All 0 where the
-        mesh is open or encloses nothing, negative where it winds inward."""
+        mesh is open or encloses nothing, negative where it winds inward. Of round shapes by closed formulas."""
         volume, centre, inertia = self._core.mass
         return Mass(volume, np.array(centre), inertia)
 
@@ -192,11 +211,40 @@ class Shape:
         return self
 
     def __reduce__(self) -> Any:
+        made = self.round
+        if made is not None:
+            return capsule, (made.radius, float(made.end[2]))
         kept = self.vertices, self.triangles, self.vertex_index, self.triangle_index
         return _remade, (self.name, *map(np.asarray, kept), self.report)
 
     def __repr__(self) -> str:
         return f"<Shape {self.name!r}: {self.report.triangles} triangles, {self.report.verdict}>"
+
+
+def ball(radius: float) -> Shape:
+    """A ball about the origin, radius in metres.
+
+    Queries take it as what it is, to rounding: its triangles are -1 there, and its vertices are a picture of it.
+    `contact_patches`, `collide` and scenes take meshes alone so far and raise InputError for it; so does a radius that
+    is not from 1e-6 to 1e8 m.
+    """
+    return Shape._wrap(_core.make_ball(as_length(radius, "radius")))
+
+
+def capsule(radius: float, half_length: float) -> Shape:
+    """All within `radius` metres of the segment from (0, 0, -half_length) to (0, 0, half_length); round as `ball` is.
+
+    Raises InputError as that, and for a half length that is not from 0 to 1e8 m.
+    """
+    return Shape._wrap(_core.make_capsule(as_length(radius, "radius"), as_length(half_length, "half_length")))
+
+
+def plane(half_extent: float = 1000.0, thickness: float = 10.0) -> Shape:
+    """The ground: a box whose top is z = 0, metres. It is finite because scenes sort bodies by their boxes.
+
+    Raises InputError for measures that are not from 1e-6 to 1e8 m.
+    """
+    return Shape._wrap(_core.make_plane(as_length(half_extent, "half_extent"), as_length(thickness, "thickness")))
 
 
 _OF_SHEETS = {
@@ -268,4 +316,4 @@ def _as_shapes(value: Any, what: str) -> tuple[list[Shape], tuple[int, ...]]:
     return shapes, (len(shapes),)
 
 
-__all__ = ["Mass", "Shape", "ShapeLike", "Shapes", "SheetWarning"]
+__all__ = ["Mass", "Round", "Shape", "ShapeLike", "Shapes", "SheetWarning", "ball", "capsule", "plane"]

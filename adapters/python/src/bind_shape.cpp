@@ -4,14 +4,16 @@
 #include "without_gil.h"
 
 #include <raycontact/error.h>
-#include <raycontact/mass.h>
+#include <raycontact/primitives.h>
 #include <raycontact/shape.h>
 
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -93,13 +95,21 @@ void bind_shape(nb::module_& m) {
         .def_prop_ro("vertex_normals", &view<double, 3, &Shape::vertex_normals>, nb::rv_policy::automatic)
         .def_prop_ro("vertex_areas", &view<float, 1, &Shape::vertex_areas>, nb::rv_policy::automatic)
         .def_prop_ro("exit_distances", &view<float, 1, &Shape::exit_distances>, nb::rv_policy::automatic)
+        .def_prop_ro("round",
+                     [](const Shape& shape) -> std::optional<nb::tuple> {
+                         const Round* round = shape.round();
+                         if (round == nullptr) return std::nullopt;
+                         return nb::make_tuple(three(round->from), three(round->to), round->radius);
+                     })
         .def_prop_ro("radius", &Shape::radius)
         .def_prop_ro("longest_edge", &Shape::longest_edge)
         .def_prop_ro("memory_bytes", &Shape::memory_bytes)
         .def_prop_ro("mass", [](const Shape& shape) {
             // Of a mesh without an inside the sums mean nothing.
             const bool holds = shape.report().volume != 0;
-            const Mass mass = holds ? mass_of(shape.file_vertices(), shape.triangles()) : Mass{};
+            const Mass mass = shape.round() != nullptr ? mass_of(*shape.round())
+                              : holds                  ? mass_of(shape.file_vertices(), shape.triangles())
+                                                       : Mass{};
             return nb::make_tuple(mass.volume, three(mass.centre),
                                   array_of(std::vector<double>(mass.inertia.begin(), mass.inertia.end()), {3, 3}));
         });
@@ -116,6 +126,20 @@ void bind_shape(nb::module_& m) {
             return std::const_pointer_cast<Shape>(Shape::make(prepare_mesh(mesh, options), threads));
         },
         "mesh"_a, "repair"_a, "nesting"_a, "holes"_a, "overlaps"_a, "threads"_a);
+    m.def(
+        "make_ball", [](double radius) { return std::const_pointer_cast<Shape>(make_ball(radius)); }, "radius"_a);
+    m.def(
+        "make_capsule",
+        [](double radius, double half_length) {
+            return std::const_pointer_cast<Shape>(make_capsule(radius, half_length));
+        },
+        "radius"_a, "half_length"_a);
+    m.def(
+        "make_plane",
+        [](double half_extent, double thickness) {
+            return std::const_pointer_cast<Shape>(make_plane(half_extent, thickness));
+        },
+        "half_extent"_a, "thickness"_a);
     m.def("remake_shape", &remake_shape, "name"_a, "vertices"_a, "triangles"_a, "vertex_index"_a, "triangle_index"_a,
           "report"_a);
 }

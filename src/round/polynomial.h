@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-namespace raycontact::bullet {
+namespace raycontact {
 
 /// Of degree N; coefficients by ascending power.
 template <std::size_t N>
@@ -53,4 +53,4 @@ Places<N> sign_changes(const Polynomial<N>& p, bool fall) {
     return found;
 }
 
-} // namespace raycontact::bullet
+} // namespace raycontact

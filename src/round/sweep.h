@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <surroundings.h>
+#include "round/surroundings.h"
 
 #include <vector>
 
-namespace raycontact::bullet {
+namespace raycontact {
 
 /// A spot that is not there yet.
 struct FirstTouch {
@@ -20,4 +20,4 @@ struct FirstTouch {
 /// has gone all the way.
 bool sweep(Surroundings& surroundings, std::vector<FirstTouch>& touched);
 
-} // namespace raycontact::bullet
+} // namespace raycontact

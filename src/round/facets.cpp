@@ -1,31 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <surface.h>
-#include <vectors.h>
+#include "round/facets.h"
+#include "mesh/vector.h"
 
 #include <raycontact/query.h>
 
-#include <BulletCollision/CollisionShapes/btHeightfieldTerrainShape.h>
-#include <BulletCollision/CollisionShapes/btTriangleCallback.h>
-
 #include <algorithm>
 
-namespace raycontact::bullet {
+namespace raycontact {
 
-namespace {
-
-void add(const std::array<Vec3, 3>& corner, std::uint32_t triangle, PlaceName name, std::vector<Facet>& out) {
+void add_facet(const std::array<Vec3, 3>& corner, std::uint32_t triangle, const std::array<int, 2>& name,
+               std::vector<Facet>& out) {
     Facet f{corner, cross(corner[1] - corner[0], corner[2] - corner[0]), corner[0], corner[0], triangle, name};
     const double area = length(f.normal);
     if (!(area > 0)) return;
     f.normal = (1 / area) * f.normal;
     for (const Vec3& c : corner) {
-        f.low = {std::min(f.low.x, c.x), std::min(f.low.y, c.y), std::min(f.low.z, c.z)};
-        f.high = {std::max(f.high.x, c.x), std::max(f.high.y, c.y), std::max(f.high.z, c.z)};
+        f.low = least(f.low, c);
+        f.high = most(f.high, c);
     }
     out.push_back(f);
 }
-
-} // namespace
 
 // Ericson, Real-Time Collision Detection (2005), 5.1.5.
 Nearest nearest(const Facet& facet, const Vec3& p) {
@@ -54,31 +48,19 @@ double least_away(const Facet& facet, const Vec3& a, const Vec3& b) {
     return length(middle - (a + at * along)) - length(facet.high - middle);
 }
 
-void Surface::near(const Vec3& low, const Vec3& high, std::vector<Facet>& out) const {
-    if (shape_) {
-        static thread_local std::vector<std::uint32_t> triangles;
-        triangles_in_box(*shape_, low, high, triangles);
-        for (const std::uint32_t t : triangles) {
-            const auto& ids = shape_->triangles()[t];
-            add({shape_->vertices()[ids[0]], shape_->vertices()[ids[1]], shape_->vertices()[ids[2]]}, t, {}, out);
-        }
-        return;
+void Facets::near(const Vec3& low, const Vec3& high, std::vector<Facet>& out) const {
+    if (source_) return source_->near(low, high, out);
+    static thread_local std::vector<std::uint32_t> triangles;
+    triangles_in_box(*shape_, low, high, triangles);
+    for (const std::uint32_t t : triangles) {
+        const auto& ids = shape_->triangles()[t];
+        add_facet({shape_->vertices()[ids[0]], shape_->vertices()[ids[1]], shape_->vertices()[ids[2]]}, t, {-1, -1},
+                  out);
     }
-    struct Gather final : btTriangleCallback {
-        std::vector<Facet>& out;
-        explicit Gather(std::vector<Facet>& o) : out(o) {}
-        void processTriangle(btVector3* t, int part, int index) override {
-            add({to_vec(t[0]), to_vec(t[1]), to_vec(t[2])}, 0, {part, index}, out);
-        }
-    } gather(out);
-    field_->processAllTriangles(&gather, to_bullet(low), to_bullet(high));
 }
 
-double Surface::size() const {
-    if (shape_) return shape_->radius();
-    btVector3 low, high;
-    field_->getAabb(btTransform::getIdentity(), low, high);
-    return double((high - low).length());
+double Facets::size() const {
+    return source_ ? source_->size() : shape_->radius();
 }
 
-} // namespace raycontact::bullet
+} // namespace raycontact

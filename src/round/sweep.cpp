@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <sweep.h>
+#include "round/sweep.h"
 
-#include <polynomial.h>
-#include <vectors.h>
+#include "mesh/vector.h"
+#include "round/lines.h"
+#include "round/polynomial.h"
 
 #include <algorithm>
 
-namespace raycontact::bullet {
+namespace raycontact {
 
 namespace {
 
@@ -44,7 +45,7 @@ public:
           radius_(radius), axis_{site_.from[1] - site_.from[0], site_.by[1] - site_.by[0]}, events_(events) {}
 
     void find() {
-        const int balls = s_.round().balls;
+        const int balls = balls_of(s_.round());
         const double longest = std::max(length(site_.by[0]), length(site_.by[1]));
         for (const Facet& f : site_.facets) {
             if (least_away(f, site_.from[0], site_.from[1]) > radius_ + longest) continue;
@@ -197,4 +198,4 @@ bool sweep(Surroundings& s, std::vector<FirstTouch>& touched) {
     return false;
 }
 
-} // namespace raycontact::bullet
+} // namespace raycontact

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <round.h>
+#include "round/round_contacts.h"
 
 #include <span>
 #include <vector>
 
-namespace raycontact::bullet {
+namespace raycontact {
 
 /// Where a ball or capsule is nearest to an obstacle. Frame of the obstacle, metres.
 struct Spot {
@@ -18,7 +18,7 @@ struct Spot {
     double away = 0;            ///< of the axis; negative: inside
     bool flat = false;          ///< the normal is that of a face
     std::uint32_t triangle = 0; ///< index of the file
-    PlaceName name{};
+    std::array<int, 2> name{-1, -1};
 };
 
 /// An obstacle as a round sees it in one step.
@@ -30,11 +30,16 @@ struct Site {
     Vec3 from[2], by[2];       ///< a straight piece of their way
 };
 
+/// How many ends count: those of a ball are one.
+inline int balls_of(const Round& round) {
+    return round.from == round.to ? 1 : 2;
+}
+
 /// A ball or capsule and all obstacles about it: one surface.
 class Surroundings {
 public:
     /// reach: how far from its surface spots may be asked for. next: the end of the way; none: it has no way.
-    Surroundings(const Round& round, const btTransform& pose, const std::optional<btTransform>& next,
+    Surroundings(const Round& round, const Pose& pose, const std::optional<Pose>& next,
                  std::span<const Obstacle> obstacles, double reach);
 
     const Round& round() const { return round_; }
@@ -76,4 +81,4 @@ private:
     double margin_ = 0; ///< of all obstacles the widest
 };
 
-} // namespace raycontact::bullet
+} // namespace raycontact

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <axis.h>
-#include <vectors.h>
+#include "round/axis.h"
+#include "mesh/vector.h"
+#include "round/lines.h"
 
 #include <raycontact/query.h>
 
 #include <algorithm>
 #include <cmath>
 
-namespace raycontact::bullet {
+namespace raycontact {
 
 namespace {
 
@@ -25,7 +26,7 @@ constexpr double parallel = 1e-4;
 
 class Axis {
 public:
-    Axis(const Surface& mesh, const Vec3& a, const Vec3& b)
+    Axis(const Facets& mesh, const Vec3& a, const Vec3& b)
         : mesh_(mesh), a_(a), b_(b), along_(b - a), length_(length(along_)), size_(mesh.size() + length_) {}
 
     std::vector<Crossing> crossings() const {
@@ -50,13 +51,13 @@ public:
     }
 
     /// Along the normal of a face, until the end that is behind it is out.
-    static WayOut past_face(const Crossing& c) {
+    static AxisExit past_face(const Crossing& c) {
         return {c.point, c.facet.normal, (c.enters() ? c.at - 1 : c.at) * c.slope, c.facet};
     }
 
-    WayOut of_piece(const Crossing& in, const Crossing& out) const {
-        WayOut best = past_face(in);
-        const WayOut other = past_face(out);
+    AxisExit of_piece(const Crossing& in, const Crossing& out) const {
+        AxisExit best = past_face(in);
+        const AxisExit other = past_face(out);
         if (other.depth < best.depth) best = other;
         const Vec3 middle = 0.5 * (in.point + out.point);
         each_facet(best.depth, [&](const Facet& f) {
@@ -86,7 +87,7 @@ private:
     }
 
     /// Sideways past an edge, if that is a rim as seen along the axis: no surface of the same part is behind it.
-    void try_edge(const Facet& f, std::size_t k, const Vec3& middle, WayOut& best) const {
+    void try_edge(const Facet& f, std::size_t k, const Vec3& middle, AxisExit& best) const {
         const Shape& shape = *mesh_.shape();
         const Vec3 &p = f.corner[k], edge = f.corner[(k + 1) % 3] - p;
         Vec3 away = cross(along_, edge);
@@ -118,7 +119,7 @@ private:
         best = {point, away, std::max(depth, 0.0), f};
     }
 
-    const Surface& mesh_;
+    const Facets& mesh_;
     Vec3 a_, b_, along_;
     double length_;
     double size_; ///< of the coordinates: what rounding grows with
@@ -126,7 +127,7 @@ private:
 
 } // namespace
 
-void ways_through(const Surface& mesh, const Vec3& a, const Vec3& b, std::vector<WayOut>& out) {
+void ways_through(const Facets& mesh, const Vec3& a, const Vec3& b, std::vector<AxisExit>& out) {
     out.clear();
     for (const Crossing& c : Axis(mesh, a, b).crossings()) {
         // The normal looks to the side of the second end where the slope is positive.
@@ -136,8 +137,8 @@ void ways_through(const Surface& mesh, const Vec3& a, const Vec3& b, std::vector
     }
 }
 
-void ways_out(const Surface& mesh, const Vec3& a, const Vec3& b, const std::array<bool, 2>& known,
-              std::vector<WayOut>& out) {
+void ways_out(const Facets& mesh, const Vec3& a, const Vec3& b, const std::array<bool, 2>& known,
+              std::vector<AxisExit>& out) {
     out.clear();
     const Axis axis(mesh, a, b);
     int inside = 0; // of how many parts
@@ -155,4 +156,4 @@ void ways_out(const Surface& mesh, const Vec3& a, const Vec3& b, const std::arra
     if (inside > 0 && !known[1]) out.push_back(Axis::past_face(*entered));
 }
 
-} // namespace raycontact::bullet
+} // namespace raycontact

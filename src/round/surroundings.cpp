@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <surroundings.h>
+#include "round/surroundings.h"
 
-#include <axis.h>
-#include <objects.h>
-#include <vectors.h>
+#include "mesh/vector.h"
+#include "round/axis.h"
+#include "round/lines.h"
 
 #include <raycontact/query.h>
 
@@ -11,7 +11,7 @@
 #include <limits>
 #include <numbers>
 
-namespace raycontact::bullet {
+namespace raycontact {
 
 namespace {
 
@@ -25,7 +25,7 @@ constexpr double one_place = 1e-3;
 constexpr double of_a_face = 1 - 1e-9;
 
 Vec3 seen_from_body(const Pose& pose, const Vec3& world) {
-    return turned_back(pose, world - pose.translation);
+    return rotated_back(pose.rotation, world - pose.translation);
 }
 
 bool in_box(const Facet& f, const Vec3& p, double around) {
@@ -55,22 +55,21 @@ void add(std::vector<Spot>& spots, const Spot& spot, double limit) {
 
 } // namespace
 
-Surroundings::Surroundings(const Round& round, const btTransform& pose, const std::optional<btTransform>& next,
+Surroundings::Surroundings(const Round& round, const Pose& pose, const std::optional<Pose>& next,
                            std::span<const Obstacle> obstacles, double reach)
     : round_(round) {
     for (const Obstacle& o : obstacles) margin_ = std::max(margin_, o.margin);
     for (const Obstacle& o : obstacles) {
         Site& site = sites_.emplace_back();
         site.obstacle = &o;
-        site.pose = to_pose(o.pose);
+        site.pose = o.pose;
         constexpr double far = std::numeric_limits<double>::max();
         Vec3 low{far, far, far}, high{-far, -far, -far};
         double longest = 0;
         for (int e = 0; e < 2; ++e) {
             const Vec3 now = site.start[e] = site.from[e] =
-                seen_from_body(site.pose, transform_point(to_pose(pose), round.ends[e]));
-            if (next)
-                site.by[e] = seen_from_body(to_pose(o.next), transform_point(to_pose(*next), round.ends[e])) - now;
+                seen_from_body(site.pose, transform_point(pose, e == 0 ? round.from : round.to));
+            if (next) site.by[e] = seen_from_body(o.next, transform_point(*next, e == 0 ? round.from : round.to)) - now;
             longest = std::max(longest, length(site.by[e]));
             for (const Vec3& p : {now, now + site.by[e]}) {
                 low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
@@ -97,8 +96,8 @@ Vec3 Surroundings::way(std::size_t obstacle, double at) const {
 // By what is between it and the axis there: both obstacles see the same.
 Vec3 Surroundings::seen_from(std::size_t other, std::size_t site, const Vec3& point, double at, double part) const {
     if (other == site) return point;
-    const Vec3 offset = turned(sites_[site].pose, point - axis(site, at, part));
-    return axis(other, at, part) + turned_back(sites_[other].pose, offset);
+    const Vec3 offset = rotated(sites_[site].pose.rotation, point - axis(site, at, part));
+    return axis(other, at, part) + rotated_back(sites_[other].pose.rotation, offset);
 }
 
 double Surroundings::beside(std::size_t site) const {
@@ -126,8 +125,8 @@ void Surroundings::deflect(const Spot& spot) {
     };
     const double push = -into / dot(moved(spot.at), spot.normal);
     for (int e = 0; e < 2; ++e) {
-        const Vec3 back = turned(site.pose, push * moved(e));
-        for (Site& s : sites_) s.by[e] = s.by[e] + turned_back(s.pose, back);
+        const Vec3 back = rotated(site.pose.rotation, push * moved(e));
+        for (Site& s : sites_) s.by[e] = s.by[e] + rotated_back(s.pose.rotation, back);
     }
 }
 
@@ -251,7 +250,7 @@ void Surroundings::of_end(int end, double part, double limit, std::vector<std::v
     }
     for (std::size_t k = 0; k < sites_.size(); ++k) {
         std::vector<Spot>& spots = out[k];
-        const Surface& surface = sites_[k].obstacle->surface;
+        const Facets& surface = sites_[k].obstacle->surface;
         if (spots.empty()) {
             // So deep inside that no surface is in reach.
             const Vec3 centre = axis(k, end, part);
@@ -335,14 +334,14 @@ void Surroundings::of_side(double part, double limit, std::vector<std::vector<Sp
 // What neither ends nor sides see: an axis inside the mesh between them.
 void Surroundings::of_axis(std::size_t k, double part, std::vector<Spot>& first, std::vector<Spot>& second,
                            std::vector<Spot>& side) const {
-    static thread_local std::vector<WayOut> ways;
+    static thread_local std::vector<AxisExit> ways;
     const Obstacle& o = *sites_[k].obstacle;
     const Vec3 a = axis(k, 0, part), b = axis(k, 1, part);
     if (o.two_sided) {
         ways_through(o.surface, a, b, ways);
         // The end that is on the other side would be pushed there.
         const auto against = [&](const Spot& s) {
-            return std::ranges::any_of(ways, [&](const WayOut& way) { return dot(way.normal, s.normal) < 0; });
+            return std::ranges::any_of(ways, [&](const AxisExit& way) { return dot(way.normal, s.normal) < 0; });
         };
         for (std::vector<Spot>* spots : {&first, &second, &side}) std::erase_if(*spots, against);
     } else {
@@ -351,7 +350,7 @@ void Surroundings::of_axis(std::size_t k, double part, std::vector<Spot>& first,
         };
         ways_out(o.surface, a, b, {is_inside(first), is_inside(second)}, ways);
     }
-    for (const WayOut& way : ways) {
+    for (const AxisExit& way : ways) {
         Spot spot{.obstacle = k,
                   .part = 2,
                   .at = 0.5,
@@ -372,7 +371,7 @@ void Surroundings::spots(double part, double limit, std::vector<Spot>& out) cons
     std::array<std::vector<std::vector<Spot>>, 3> found; // by part and obstacle
     for (auto& of_part : found) of_part.resize(sites_.size());
     of_end(0, part, farther, found[0]);
-    if (round_.balls > 1) {
+    if (balls_of(round_) > 1) {
         of_end(1, part, farther, found[1]);
         of_side(part, farther, found[2]);
         for (std::size_t k = 0; k < sites_.size(); ++k) of_axis(k, part, found[0][k], found[1][k], found[2][k]);
@@ -387,4 +386,4 @@ void Surroundings::spots(double part, double limit, std::vector<Spot>& out) cons
         if (s.away < limit && (s.flat || s.away <= 0 || !is_step(s, all, part))) out.push_back(s);
 }
 
-} // namespace raycontact::bullet
+} // namespace raycontact
