@@ -172,6 +172,56 @@ def test_progress_is_told_and_may_end_the_search():
     assert len(rc.clash(row(0, 0.5, 1), progress=True)) == 3
 
 
+def door():
+    """A door of 1 m about a hinge at (5, 0, 0), a wall that it meets, and a post that it passes."""
+    size = {"door": (0.9, 0.04, 2), "wall": (0.8, 0.1, 2), "post": (0.1, 0.1, 2)}
+    at = {"door": (5.55, 0, 1), "wall": (4.9, 0.55, 1), "post": (5.25, -0.85, 1)}
+    return [(name, rc.box(size[name]), rc.pose(at[name])) for name in size]
+
+
+def test_what_moves_is_told_what_it_meets_and_when():
+    angles = np.linspace(0, np.radians(120), 3)
+    found = rc.clash_along(door(), "d*r", rc.turn((0, 0, 1), angles, (5, 0, 0)), at=np.degrees(angles))
+    (met,) = found
+    assert (met.moving, met.other, met.index_moving, met.index_other, met.meet) == ("door", "wall", 0, 1, True)
+    angle = np.arctan2(0.5, 0.3) - np.arcsin(0.02 / np.hypot(0.5, 0.3))  # its face comes to the wall's corner
+    assert met.at == pytest.approx(np.degrees(angle), abs=1e-3) and met.time == pytest.approx(2 * met.at / 120)
+    assert np.allclose(met.point_other[:2], [5.3, 0.5], atol=1e-5) and met.distance < 1e-5
+    assert found.nearest.other == "post" and not found.nearest.meet and "meet  at 57." in str(found)
+    # The other way it passes the post, which lies beyond its end: the corner of its end comes nearest.
+    angles = -angles
+    moves = rc.turn((0, 0, 1), angles, (5, 0, 0))
+    away = rc.clash_along(door(), ["door"], moves)
+    corner, post = np.hypot(1, 0.02), np.hypot(0.2, 0.8)
+    assert post < corner and [one.other for one in away] == ["post"], "it does not: it is met"
+    far = [*door()[:2], ("post", door()[2][1], rc.pose((5.25, -1.15, 1)))]
+    away = rc.clash_along(far, "door", moves, exclude=[("door", "wall")])
+    assert not away and not away.nearest.meet and away.nearest.at == away.nearest.time
+    assert away.nearest.distance == pytest.approx(np.hypot(0.2, 1.1) - corner, abs=2e-4)
+    assert rc.clash_along(far, "door", moves, clearance=0.2)[0].other == "post"
+    # A drawer; what stays in its place; all as files in millimetres have it.
+    (met,) = rc.clash_along(row(0, 3), "part 0", rc.slide((1, 0, 0), [0, 4]), at=[0, 4])
+    assert met.at == pytest.approx(2, abs=1e-5)
+    (met,) = rc.clash_along(row(0, 3000), "part 0", rc.slide((1, 0, 0), [0, 4]), scale=0.001)
+    assert met.at == pytest.approx((3 - 0.001) / 4, abs=1e-5)
+    assert rc.clash_along(row(0, 0.5), "part 0", np.eye(4))[0].time == 0
+
+
+def test_moves_that_are_none_are_refused():
+    moves = rc.slide((1, 0, 0), [0, 4])
+    for words in [{"moving": "no*"}, {"moving": []}, {"moving": "*"}, {"moves": np.empty((0, 4, 4))},
+                  {"moves": 2 * moves}, {"moves": moves[None]}, {"at": [1]}, {"at": [0, np.nan]},
+                  {"clearance": -1}]:  # fmt: skip
+        with pytest.raises(rc.InputError):
+            rc.clash_along(row(0, 3), **{"moving": "part 0", "moves": moves, **words})
+
+    def refuse(done):
+        raise LookupError("enough")
+
+    with pytest.raises(LookupError, match="enough"):
+        rc.clash_along(row(0, 3, 6), "part 0", rc.slide((1, 0, 0), [0, 9]), progress=refuse)
+
+
 def test_a_part_that_cannot_be_checked_is_named():
     flat = rc.Mesh([[0, 0, 0], [1, 0, 0], [2, 0, 0]], [[0, 1, 2]])
     found = rc.clash([*row(0, 0.5), ("flat", flat, None), ("flat", flat, None)])

@@ -5,13 +5,13 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import Any, NamedTuple, Optional, Union
+from typing import Any, NamedTuple, Optional, TypeVar, Union
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._arrays import as_count, as_length, as_pose
+from ._arrays import PoseLike, as_count, as_length, as_numbers, as_pose, as_poses
 from ._core import InputError
 from .mesh import Mesh, scaled_parts, split_parts, tell
 
@@ -72,28 +72,41 @@ class Fault(NamedTuple):
     why: str
 
 
-class Clashes(Sequence[Clash]):
-    """Clashes, the deepest first, then those without a depth, that touch, that are near."""
+_One = TypeVar("_One")
 
-    def __init__(self, clashes: list[Clash], parts: list[str], pairs: int, faults: list[Fault], open: list[str]):
-        self._clashes = clashes
+
+class _Found(Sequence[_One]):
+    """What a search found."""
+
+    def __init__(self, found: list[_One], parts: list[str], pairs: int, faults: list[Fault]):
+        self._found = found
         self.parts = parts
         """Names of all parts."""
         self.pairs = pairs
         """How many pairs of boxes touch, or are near; only these can clash."""
         self.faults = faults
         """Parts that could not be checked."""
-        self.open = open
-        """Parts without an inside."""
 
     def __getitem__(self, which: Any) -> Any:
-        return self._clashes[which]
+        return self._found[which]
 
     def __len__(self) -> int:
-        return len(self._clashes)
+        return len(self._found)
 
-    def __iter__(self) -> Iterator[Clash]:
-        return iter(self._clashes)
+    def __iter__(self) -> Iterator[_One]:
+        return iter(self._found)
+
+    def _not_checked(self) -> list[str]:
+        return [f"not checked: {_some([fault.name for fault in self.faults])}"] if self.faults else []
+
+
+class Clashes(_Found[Clash]):
+    """Clashes, the deepest first, then those without a depth, that touch, that are near."""
+
+    def __init__(self, clashes: list[Clash], parts: list[str], pairs: int, faults: list[Fault], open: list[str]):
+        super().__init__(clashes, parts, pairs, faults)
+        self.open = open
+        """Parts without an inside."""
 
     def __repr__(self) -> str:
         depths = [clash.depth for clash in self if clash.depth and clash.depth > 0]
@@ -110,9 +123,58 @@ class Clashes(Sequence[Clash]):
         lines.append(repr(self)[1:-1])
         if self.open:
             lines.append(f"open, so that nothing is inside: {_some(self.open)}")
-        if self.faults:
-            lines.append(f"not checked: {_some([fault.name for fault in self.faults])}")
-        return "\n".join(lines)
+        return "\n".join(lines + self._not_checked())
+
+
+class PathClash(NamedTuple):
+    """A part that moves, and one that it meets or comes near on its way.
+
+    moving: name of the part that moves.
+    other: name of the other.
+    meet: they meet, at `time` first; else they are nearest to each other then.
+    time: from 0 to the number of moves less 1.
+    distance: metres; of those that meet at most 1e-7 of the smaller part.
+    point_moving: (3,) float64, metres, frame of the assembly: on the part that moves, where it is then.
+    point_other: likewise on the other.
+    index_moving: of the part that moves in the list of parts.
+    index_other: of the other.
+    at: what `clash_along` was told of that time; else the time.
+    """
+
+    moving: str
+    other: str
+    meet: bool
+    time: float
+    distance: float
+    point_moving: NDArray[np.float64]
+    point_other: NDArray[np.float64]
+    index_moving: int
+    index_other: int
+    at: float
+
+
+class PathClashes(_Found[PathClash]):
+    """Those that meet, the first one first; then those that come no farther apart than the clearance, the nearest
+    first."""
+
+    def __init__(
+        self, found: list[PathClash], parts: list[str], pairs: int, faults: list[Fault], nearest: Optional[PathClash]
+    ):
+        super().__init__(found, parts, pairs, faults)
+        self.nearest = nearest
+        """Of all that stay apart those that come nearest to each other; None: there are none."""
+
+    def __repr__(self) -> str:
+        meet = sum(one.meet for one in self)
+        least = f", the others {self.nearest.distance:.6g} m apart" if self.nearest else ""
+        return f"<PathClashes: {meet} of {self.pairs} pairs meet among {len(self.parts)} parts{least}>"
+
+    def __str__(self) -> str:
+        lines = []
+        for one in self:
+            how = "meet" if one.meet else f"{one.distance:.4g} m apart"
+            lines.append(f"{how:>16}  at {one.at:<10.6g}  {one.moving}  x  {one.other}")
+        return "\n".join([*lines, repr(self)[1:-1], *self._not_checked()])
 
 
 _NOTES = {
@@ -162,6 +224,80 @@ def clash(
     Raises InputError for files that cannot be read, for fewer than two parts, for poses that are not rigid, for names
     that match nothing, for lengths below 0 and for a weld that `Mesh` refuses.
     """
+    given = _given(assembly, scale, weld, components)
+    options = _options(exclude, clearance, threads)
+    options.against = [against] if isinstance(against, str) else list(against or ())
+    options.tolerance = as_length(tolerance, "tolerance")
+    options.volumes = bool(volumes)
+    with _Bar(progress) as bar:
+        found, pairs, faults, opened = _core.find_clashes(*given, options, bar.tell)
+    names = given[0]
+    clashes = [Clash(names[one[5]], names[one[6]], *one) for one in found]
+    if ignore_touching is not None:
+        most = as_length(ignore_touching, "ignore_touching") * (1 + 1e-6)  # depths are float32
+        clashes = [one for one in clashes if one.kind == "near" or one.depth is None or one.depth > most]
+    return Clashes(clashes, names, pairs, _faults(names, faults), [names[i] for i in opened])
+
+
+def clash_along(
+    assembly: Any,
+    moving: Union[str, Sequence[str]],
+    moves: PoseLike,
+    *,
+    at: Optional[ArrayLike] = None,
+    scale: float = 1.0,
+    weld: Optional[float] = None,
+    components: bool = False,
+    exclude: Iterable[Union[str, tuple[str, str]]] = (),
+    clearance: float = 0.0,
+    threads: int = 0,
+    progress: Union[bool, Callable[[float], Any]] = False,
+) -> PathClashes:
+    """What some parts meet while they move together past all others, when first, and how near they come to what they
+    do not meet.
+
+    moving: names or patterns of the parts that move, as `clash` has them in `against`.
+    moves: (n, 4, 4), rigid, n at least 1: from where the parts are placed to where they are at times 0, 1, ..., in the
+        frame of the assembly; from each to the next by a screw, the shortest turn. `turn` and `slide` make those of a
+        hinge and of a drawer: `turn((0, 0, 1), np.linspace(0, 2, 3), hinge)`.
+    at: (n,), what `PathClash.at` is at these times, as the angles of a turn; in between in proportion.
+    clearance: metres; parts that come no farther apart are found, too.
+    assembly, scale, weld, components, exclude, threads, progress: as of `clash`, which raises the same; translations of
+        moves are in the unit that scale makes.
+
+    Times, distances and tolerances are those of `path_clearance`: two that touch at the start have met there, so leave
+    out a hinge with `exclude`. Raises InputError, too, for moves that are none or not rigid, and for an `at` that has
+    not as many finite numbers.
+    """
+    given = _given(assembly, scale, weld, components)
+    poses = as_poses(moves, "moves", rigid=True)
+    poses = poses[np.newaxis] if poses.ndim == 2 else poses
+    if poses.ndim != 3:
+        raise InputError(f"moves: has shape {poses.shape}; give (n, 4, 4)")
+    values = np.arange(len(poses)) if at is None else as_numbers(at, "at")
+    if values.shape != (len(poses),) or not np.isfinite(values).all():
+        raise InputError(f"at: has shape {values.shape}; give {len(poses)} finite numbers, one for each move")
+    names = given[0]
+
+    def made(one: tuple[Any, ...]) -> PathClash:
+        then = float(np.interp(one[1], range(len(values)), values))
+        return PathClash._make((names[one[5]], names[one[6]], *one, then))
+
+    with _Bar(progress) as bar:
+        found, nearest, pairs, faults = _core.find_path_clashes(
+            *given, [moving] if isinstance(moving, str) else list(moving), poses,
+            _options(exclude, clearance, threads), bar.tell,
+        )  # fmt: skip
+    return PathClashes(
+        [made(one) for one in found], names, pairs, _faults(names, faults), None if nearest is None else made(nearest)
+    )
+
+
+_Given = tuple[list[str], list[_core.Mesh], NDArray[np.float64], list[str], list[int]]
+
+
+def _given(assembly: Any, scale: float, weld: Optional[float], components: bool) -> _Given:
+    """Names, meshes, poses, files and parents of the parts, as the C++ half takes them."""
     given, files, parents = _parts_of(assembly)
     parts = scaled_parts(given, scale, weld)
     if components and parts:
@@ -172,20 +308,20 @@ def clash(
             f"clash: {len(parts)} part given; give several, or a file that has parts: nodes, objects, groups or solids"
             + more
         )
-    names = [part.name for part in parts]
     poses = np.ascontiguousarray(np.stack([part.pose for part in parts]))
-    meshes = [part.mesh._core for part in parts]
-    with _Bar(progress) as bar:
-        found, pairs, faults, opened = _core.find_clashes(
-            names, meshes, poses, files, parents, [against] if isinstance(against, str) else list(against or ()),
-            *_excluded(exclude), as_length(clearance, "clearance"), as_length(tolerance, "tolerance"), bool(volumes),
-            as_count(threads, "threads"), bar.tell,
-        )  # fmt: skip
-    clashes = [Clash(names[one[5]], names[one[6]], *one) for one in found]
-    if ignore_touching is not None:
-        most = as_length(ignore_touching, "ignore_touching") * (1 + 1e-6)  # depths are float32
-        clashes = [one for one in clashes if one.kind == "near" or one.depth is None or one.depth > most]
-    return Clashes(clashes, names, pairs, [Fault(i, names[i], why) for i, why in faults], [names[i] for i in opened])
+    return [part.name for part in parts], [part.mesh._core for part in parts], poses, files, parents
+
+
+def _options(exclude: Iterable[Union[str, tuple[str, str]]], clearance: float, threads: int) -> _core.ClashOptions:
+    options = _core.ClashOptions()
+    options.exclude, options.exclude_parent_child = _excluded(exclude)
+    options.clearance = as_length(clearance, "clearance")
+    options.threads = as_count(threads, "threads")
+    return options
+
+
+def _faults(names: list[str], faults: list[tuple[int, str]]) -> list[Fault]:
+    return [Fault(i, names[i], why) for i, why in faults]
 
 
 def _excluded(exclude: Iterable[Union[str, tuple[str, str]]]) -> tuple[list[tuple[str, str]], bool]:
@@ -254,4 +390,4 @@ class _Bar:
             self._bar.close()
 
 
-__all__ = ["Clash", "Clashes", "Fault", "clash"]
+__all__ = ["Clash", "Clashes", "Fault", "PathClash", "PathClashes", "clash", "clash_along"]

@@ -69,9 +69,12 @@ nb::tuple tuples_of(const std::vector<AssemblyPart>& parts) {
     return nb::make_tuple(list, files, parents);
 }
 
+Array three(const Vec3& v) {
+    return array_of(std::vector<double>{v.x, v.y, v.z}, {3});
+}
+
 /// In the order of the fields of Python's Clash, without the names.
 nb::tuple tuple_of(const Clash& found) {
-    const auto three = [](const Vec3& v) { return array_of(std::vector<double>{v.x, v.y, v.z}, {3}); };
     const auto box = [](const AxisBox& b) {
         return array_of(std::vector<double>{b.low.x, b.low.y, b.low.z, b.high.x, b.high.y, b.high.z}, {2, 3});
     };
@@ -102,34 +105,61 @@ std::vector<AssemblyPart> parts_from(const std::vector<std::string>& names,
     return parts;
 }
 
-/// progress: None, or a function of what is done, from 0 to 1. files and parents: as parts_from() has them.
+/// A search that Ctrl-C ends, and a progress that throws. progress: None, or a function of what is done, from 0 to 1.
+template <typename Find>
+auto found_by(const Find& find, ClashOptions options, const nb::object& progress) {
+    WithoutGil without_gil;
+    Interruption interruption(without_gil);
+    options.stop = [&] { return interruption.stop(); };
+    if (!progress.is_none())
+        options.progress = [&](double done) {
+            interruption.run([&] {
+                const nb::gil_scoped_acquire gil;
+                progress(done);
+            });
+        };
+    auto report = find(options);
+    interruption.rethrow();
+    return report;
+}
+
+nb::list faults_of(const auto& report) {
+    nb::list faults;
+    for (const auto& [part, why] : report.faults) faults.append(nb::make_tuple(part, why));
+    return faults;
+}
+
+/// files and parents: as parts_from() has them.
 nb::tuple find_clashes_of(const std::vector<std::string>& names, const std::vector<std::shared_ptr<Mesh>>& meshes,
                           const Matrices& matrices, const std::vector<std::string>& files,
-                          const std::vector<std::ptrdiff_t>& parents, const std::vector<std::string>& against,
-                          const std::vector<std::array<std::string, 2>>& exclude, bool exclude_parent_child,
-                          double clearance, double tolerance, bool volumes, std::uint32_t threads,
+                          const std::vector<std::ptrdiff_t>& parents, const ClashOptions& options,
                           const nb::object& progress) {
     const std::vector<AssemblyPart> parts = parts_from(names, meshes, matrices, files, parents);
-    ClashReport report;
-    {
-        WithoutGil without_gil;
-        Interruption interruption(without_gil);
-        ClashOptions options{against, exclude, exclude_parent_child, clearance, tolerance, volumes, threads};
-        options.stop = [&] { return interruption.stop(); };
-        if (!progress.is_none())
-            options.progress = [&](double done) {
-                interruption.run([&] {
-                    const nb::gil_scoped_acquire gil;
-                    progress(done);
-                });
-            };
-        report = find_clashes(parts, options);
-        interruption.rethrow();
-    }
-    nb::list found, faults;
+    const ClashReport report =
+        found_by([&](const ClashOptions& how) { return find_clashes(parts, how); }, options, progress);
+    nb::list found;
     for (const Clash& one : report.clashes) found.append(tuple_of(one));
-    for (const auto& [part, why] : report.faults) faults.append(nb::make_tuple(part, why));
-    return nb::make_tuple(found, report.pairs, faults, nb::cast(report.open));
+    return nb::make_tuple(found, report.pairs, faults_of(report), nb::cast(report.open));
+}
+
+/// In the order of the fields of Python's PathClash, without the names.
+nb::tuple tuple_of(const PathClash& found) {
+    return nb::make_tuple(found.meet, found.place.time, found.place.distance, three(found.place.point_a),
+                          three(found.place.point_b), found.moving, found.other);
+}
+
+nb::tuple find_path_clashes_of(const std::vector<std::string>& names, const std::vector<std::shared_ptr<Mesh>>& meshes,
+                               const Matrices& matrices, const std::vector<std::string>& files,
+                               const std::vector<std::ptrdiff_t>& parents, const std::vector<std::string>& moving,
+                               const Matrices& moves, const ClashOptions& options, const nb::object& progress) {
+    const std::vector<AssemblyPart> parts = parts_from(names, meshes, matrices, files, parents);
+    const std::vector<Pose> path = poses_of(moves);
+    const PathClashReport report = found_by(
+        [&](const ClashOptions& how) { return find_path_clashes(parts, moving, path, how); }, options, progress);
+    nb::list found;
+    for (const PathClash& one : report.clashes) found.append(tuple_of(one));
+    return nb::make_tuple(found, report.nearest ? tuple_of(*report.nearest) : nb::object(nb::none()), report.pairs,
+                          faults_of(report));
 }
 
 } // namespace
@@ -161,9 +191,19 @@ void bind_clash(nb::module_& m) {
             return nb::make_tuple(tuples_of(parts), left_out);
         },
         "names"_a, "meshes"_a, "poses"_a, "files"_a, "parents"_a);
-    m.def("find_clashes", &find_clashes_of, "names"_a, "meshes"_a, "poses"_a, "files"_a, "parents"_a, "against"_a,
-          "exclude"_a, "exclude_parent_child"_a, "clearance"_a, "tolerance"_a, "volumes"_a, "threads"_a,
+    nb::class_<ClashOptions>(m, "ClashOptions")
+        .def(nb::init<>())
+        .def_rw("against", &ClashOptions::against)
+        .def_rw("exclude", &ClashOptions::exclude)
+        .def_rw("exclude_parent_child", &ClashOptions::exclude_parent_child)
+        .def_rw("clearance", &ClashOptions::clearance)
+        .def_rw("tolerance", &ClashOptions::tolerance)
+        .def_rw("volumes", &ClashOptions::volumes)
+        .def_rw("threads", &ClashOptions::threads);
+    m.def("find_clashes", &find_clashes_of, "names"_a, "meshes"_a, "poses"_a, "files"_a, "parents"_a, "options"_a,
           "progress"_a.none());
+    m.def("find_path_clashes", &find_path_clashes_of, "names"_a, "meshes"_a, "poses"_a, "files"_a, "parents"_a,
+          "moving"_a, "moves"_a, "options"_a, "progress"_a.none());
 }
 
 } // namespace raycontact::python
