@@ -6,6 +6,7 @@
 #include "cli/out_option.h"
 #include "cli/program.h"
 #include "cli/progress.h"
+#include "cli/separation.h"
 #include "cli/stop.h"
 #include "cli/weld_option.h"
 
@@ -53,7 +54,7 @@ struct Options {
     double clearance = 0, tolerance = 0;
     std::optional<double> ignore_touching, weld;
     std::string unit; ///< empty: not told
-    bool components = false, volume = false;
+    bool components = false, volume = false, separation = false;
     std::uint32_t threads = 0;
     std::string out, csv, bcf, along, range;
     bool json = false;
@@ -114,6 +115,7 @@ std::string json_lines(const Result& result, const Options& options) {
         if (c.open_a) line["open"].push_back("a");
         if (c.open_b) line["open"].push_back("b");
         line["box"] = c.box ? Json{three(c.box->low), three(c.box->high)} : Json();
+        if (options.separation) line["separation"] = c.separation ? separation_json(*c.separation) : Json();
         if (options.volume) line["volume"] = c.volume ? Json(*c.volume) : Json();
         if (!options.unit.empty()) line["unit"] = options.unit;
         text += line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
@@ -121,7 +123,7 @@ std::string json_lines(const Result& result, const Options& options) {
     return text;
 }
 
-std::string note_of(const Clash& c) {
+std::string note_of(const Clash& c, const char* unit) {
     std::string note = c.kind == ClashKind::duplicate  ? "the same part in the same place"
                        : c.kind == ClashKind::inside   ? "one inside the other"
                        : c.kind == ClashKind::piercing ? "one through the other"
@@ -130,6 +132,7 @@ std::string note_of(const Clash& c) {
         note += note.empty() ? "" : ", ";
         note += c.open_a && c.open_b ? "both are open" : c.open_a ? "the first is open" : "the second is open";
     }
+    if (c.separation) note += (note.empty() ? "" : ", ") + separation_words(*c.separation, unit);
     return note.empty() ? note : "  (" + note + ")";
 }
 
@@ -141,7 +144,7 @@ std::string table(const Result& result, const char* unit) {
                                   : *c.depth > 0              ? fmt::format("{} {}", float(*c.depth), unit)
                                                               : "touching";
         text += fmt::format("{:>12}  {}  x  {}  at {}, {}, {}{}\n", depth, result.parts[c.a].name,
-                            result.parts[c.b].name, c.point.x, c.point.y, c.point.z, note_of(c));
+                            result.parts[c.b].name, c.point.x, c.point.y, c.point.z, note_of(c, unit));
     }
     return text;
 }
@@ -236,6 +239,7 @@ Result search(const Options& options) {
     how.clearance = options.clearance;
     how.tolerance = options.tolerance;
     how.volumes = options.volume;
+    how.separations = options.separation;
     how.threads = options.threads;
     Result result;
     std::vector<std::string> left_out;
@@ -280,6 +284,7 @@ void run_path(const Options& options) {
                                       {options.tolerance > 0, "--tolerance"},
                                       {options.ignore_touching.has_value(), "--ignore-touching"},
                                       {options.volume, "--volume"},
+                                      {options.separation, "--separation"},
                                       {!options.out.empty(), "--out"},
                                       {!options.csv.empty(), "--csv"},
                                       {!options.bcf.empty(), "--bcf"}})
@@ -385,6 +390,8 @@ void add_clash(CLI::App& app) {
     command->add_flag("--components", options->components,
                       "split parts into their connected components, each solid with its cavities");
     command->add_flag("--volume", options->volume, "also find the volume that two parts share (slow)");
+    command->add_flag("--separation", options->separation,
+                      "also find the translation that parts two parts (slow: seconds for large ones)");
     add_number(*command, "--threads", options->threads, "0: one for each core", 0u, 1024u);
     add_out(*command, "--out", options->out, "write all parts there as .glb, those that clash in red")
         ->type_name("FILE.glb");

@@ -5,6 +5,7 @@
 #include <raycontact/error.h>
 #include <raycontact/export.h>
 #include <raycontact/query.h>
+#include <raycontact/separation.h>
 #include <raycontact/shape.h>
 
 #include <array>
@@ -57,6 +58,9 @@ struct Clash {
     /// about the curves in which they cross. None: they touch, or are near.
     std::optional<AxisBox> box;
     std::optional<double> volume; ///< that they share, m^3, if asked for; none where one has no inside
+    /// The translation of b that parts them, as separation() finds it, if asked for; none where one has no inside, and
+    /// where they touch or are near.
+    std::optional<Separation> separation;
 };
 
 /// What find_clashes() looks for.
@@ -70,6 +74,7 @@ struct ClashOptions {
     double clearance = 0;              ///< metres; pairs not farther apart are `near`
     double tolerance = 0;              ///< metres; gaps, and depths but of two open parts, up to it are `touching`
     bool volumes = false;              ///< asks for Clash::volume: seconds for parts of 100 000 triangles
+    bool separations = false;          ///< asks for Clash::separation: some times the search, seconds for large parts
     std::uint32_t threads = 0;         ///< 0: one per core; no result depends on it
     /// Told what is done, from 0 to 1; from any thread, but from one at a time.
     std::function<void(double)> progress = [](double) {};

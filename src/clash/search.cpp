@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <optional>
 #include <tuple>
 #include <unordered_map>
@@ -170,7 +171,6 @@ void set_kind(Answer& answer, const Part& a, const Part& b, const ClashOptions& 
         answer.is_doubtful = solid;
         clash.depth.reset();
     }
-    if (solid && options.volumes) clash.volume = overlap_volume(*a.shape, a.pose, *b.shape, b.pose);
 }
 
 /// Parts that cross without a contact touch if both are sound: closed, wound outward and not self-intersecting. Looks
@@ -197,8 +197,25 @@ void settle_doubts(std::span<Answer> answers, const std::vector<Part>& parts, Ex
         if (clash.kind != ClashKind::duplicate) clash.kind = ClashKind::touching;
         clash.depth = 0;
         clash.box.reset();
-        clash.volume.reset();
     }
+}
+
+/// What is asked for of solids that share more than points; it takes longer than to find them.
+void measure(std::span<Answer> answers, const std::vector<Part>& parts, const ClashOptions& options, Executor& executor,
+             const std::function<void(double)>& progress) {
+    std::mutex mutex;
+    std::size_t done = 0;
+    executor.each(answers.size(), 1, [&](std::uint32_t i) {
+        Clash& clash = *answers[i].clash;
+        const Part &a = parts[clash.a], &b = parts[clash.b];
+        if (options.stop()) return;
+        if (clash.box && a.shape->has_inside() && b.shape->has_inside()) {
+            if (options.volumes) clash.volume = overlap_volume(*a.shape, a.pose, *b.shape, b.pose);
+            if (options.separations) clash.separation = separation(*a.shape, a.pose, *b.shape, b.pose);
+        }
+        const std::lock_guard lock(mutex);
+        progress(double(++done) / double(answers.size()));
+    });
 }
 
 /// The bodies of the parts that are asked about.
@@ -219,7 +236,9 @@ private:
 };
 
 std::vector<Answer> search(const std::vector<Part>& parts, std::span<const PartPair> pairs, const ClashOptions& options,
-                           Executor& executor, const std::function<void(std::size_t)>& progress) {
+                           Executor& executor, const std::function<void(double)>& progress) {
+    const bool measures = options.volumes || options.separations;
+    const double to_find = measures ? 0.2 : 1;
     Settings settings;
     settings.method = Method::standard;
     settings.direction = Direction::refined; // the depths of threads and tubes obey their bound
@@ -256,9 +275,11 @@ std::vector<Answer> search(const std::vector<Part>& parts, std::span<const PartP
         });
         for (const Answer& answer : answers)
             if (answer.clash) found.push_back(answer);
-        progress(first + some.size());
+        progress(to_find * double(first + some.size()) / double(pairs.size()));
     }
     settle_doubts(found, parts, executor, options.stop);
+    if (measures)
+        measure(found, parts, options, executor, [&](double done) { progress(to_find + (1 - to_find) * done); });
     return found;
 }
 
@@ -287,9 +308,8 @@ ClashReport find_clashes(std::span<const AssemblyPart> given, const ClashOptions
     }
     std::erase_if(pairs, [&](const PartPair& pair) { return !parts[pair.a].shape || !parts[pair.b].shape; });
     Executor executor(options.threads);
-    for (const Answer& answer : search(parts, pairs, options, executor, [&](std::size_t done) {
-             options.progress(shapes + (1 - shapes) * double(done) / double(pairs.size()));
-         }))
+    for (const Answer& answer :
+         search(parts, pairs, options, executor, [&](double done) { options.progress(shapes + (1 - shapes) * done); }))
         report.clashes.push_back(*answer.clash);
     std::sort(report.clashes.begin(), report.clashes.end(), [](const Clash& p, const Clash& q) {
         const auto rank = [](const Clash& c) { return -c.depth.value_or(1e-300); }; // any depth is more

@@ -162,6 +162,25 @@ TEST_F(Clash, OneInsideAnother) {
     EXPECT_GT(found["depth"].get<double>(), 0.2);
 }
 
+TEST_F(Clash, SeparationsAreToldWhereAsked) {
+    write_cube("a.obj", 0);
+    write_cube("b.obj", 0.75);
+    write_cube("on it.obj", -1);
+    const auto found = clashes({"a.obj", "b.obj", "on it.obj", "--separation"});
+    ASSERT_EQ(found.size(), 2u);
+    const json& parted = found[0]["separation"];
+    EXPECT_EQ(keys_of(parted), (std::set<std::string>{"distance", "normal", "point_a", "point_b"}));
+    EXPECT_NEAR(parted["distance"].get<double>(), -0.25, 1e-4);
+    EXPECT_NEAR(parted["normal"][0].get<double>(), 1, 1e-6);
+    EXPECT_NEAR(parted["point_a"][0].get<double>(), 0.5, 1e-6);
+    EXPECT_TRUE(found[1]["separation"].is_null()) << "they touch";
+    const std::string text = run({"a.obj", "b.obj", "--separation", "--unit", "mm", "--csv", "parted.csv"}).out;
+    EXPECT_NE(text.find("  (parted by 0.25"), std::string::npos) << text;
+    EXPECT_NE(text.find(" mm along 1, 0, 0)\n"), std::string::npos) << text;
+    std::ifstream file(folder_.path() / "parted.csv", std::ios::binary);
+    EXPECT_NE(std::string(std::istreambuf_iterator<char>(file), {}).find(",,-0.25"), std::string::npos);
+}
+
 TEST_F(Clash, TheSamePartTwice) {
     write_assembly("all.gltf", {{"p", 0}, {"p", 0}});
     const json found = only_clash({"all.gltf"});
@@ -412,13 +431,13 @@ TEST_F(Clash, Table) {
     const std::string text{std::istreambuf_iterator<char>(file), {}};
     EXPECT_TRUE(text.starts_with("a,b,kind,depth,distance,x,y,z,contacts,open,low_x,")) << text;
     EXPECT_NE(text.find("\r\na.obj,\"b, \"\"2\"\".obj\",overlapping,0.249"), std::string::npos) << text;
-    EXPECT_NE(text.find(",volume,unit\r\n"), std::string::npos) << text;
-    EXPECT_NE(text.find(",0.25,mm\r\na.obj,touch.obj,touching,0,0,-0.5,"), std::string::npos) << text;
-    EXPECT_TRUE(text.ends_with(",0,,,,,,,,,mm\r\n")) << text;
+    EXPECT_NE(text.find(",volume,separation,unit\r\n"), std::string::npos) << text;
+    EXPECT_NE(text.find(",0.25,,mm\r\na.obj,touch.obj,touching,0,0,-0.5,"), std::string::npos) << text;
+    EXPECT_TRUE(text.ends_with(",0,,,,,,,,,,mm\r\n")) << text;
     ASSERT_EQ(run({"a.obj", "touch.obj", "--csv", "out.csv"}).status, 0);
     std::ifstream untold(folder_.path() / "out.csv", std::ios::binary);
     const std::string without{std::istreambuf_iterator<char>(untold), {}};
-    EXPECT_TRUE(without.ends_with(",0,,,,,,,,,\r\n")) << without;
+    EXPECT_TRUE(without.ends_with(",0,,,,,,,,,,\r\n")) << without;
 }
 
 TEST_F(Clash, SameForEveryNumberOfThreads) {

@@ -52,6 +52,16 @@ def test_kinds_boxes_and_volumes():
     assert [one.kind for one in rc.clash(row(0, 0.999, 2.0), tolerance=0.0011)] == ["touching"] * 2
 
 
+def test_separations_part_what_clashes():
+    found = rc.clash(row(0, 0.75, 1.75), separations=True)
+    parted = found[0].separation
+    assert parted.distance == pytest.approx(-0.25, abs=1e-4) and np.allclose(parted.normal, [1, 0, 0])
+    away = rc.pose([0.75 - parted.distance * parted.normal[0], 0, 0])
+    assert not rc.intersects(BOX, BOX, None, away) and parted.point_a[0] == pytest.approx(0.5)
+    assert found[1].kind == "touching" and found[1].separation is None
+    assert rc.clash(row(0, 0.75))[0].separation is None
+
+
 def test_pairs_are_chosen():
     parts = row(0, 0.75, 1.5, 2.25)
 

@@ -82,7 +82,7 @@ def _clash(options: argparse.Namespace) -> int:
         options.files, scale=options.scale, weld=options.weld, components=options.components,
         against=options.against, exclude=exclude,
         clearance=options.clearance, tolerance=options.tolerance, ignore_touching=options.ignore_touching,
-        progress=sys.stderr.isatty(),
+        separations=options.separation, progress=sys.stderr.isatty(),
     )  # fmt: skip
     for fault in found.faults:
         print(f"not checked: {fault.name}: {fault.why}", file=sys.stderr)
@@ -93,7 +93,13 @@ def _clash(options: argparse.Namespace) -> int:
             line |= {"duplicate": one.duplicate, "normal": normal, "kind": one.kind, "distance": one.distance}
             line |= {"point_a": one.point_a.tolist(), "point_b": one.point_b.tolist()}
             line["open"] = [name for name, is_open in zip("ab", one.open, strict=True) if is_open]
-            print(json.dumps({**line, "box": None if one.box is None else one.box.tolist()}))
+            line["box"] = None if one.box is None else one.box.tolist()
+            if options.separation:
+                parted = one.separation
+                line["separation"] = parted and {
+                    name: value if name == "distance" else value.tolist() for name, value in parted._asdict().items()
+                }
+            print(json.dumps(line))
     else:
         print(found)
     if options.check and not found and found.faults:
@@ -143,6 +149,7 @@ def main(arguments: list[str] | None = None) -> int:
     clash.add_argument("--components", action="store_true", help="split parts into their connected components")
     clash.add_argument("--clearance", type=float, default=0.0, metavar="LENGTH", help="also find those so near")
     clash.add_argument("--tolerance", type=float, default=0.0, metavar="LENGTH", help="up to this they are touching")
+    clash.add_argument("--separation", action="store_true", help="also find the translation that parts two (slow)")
     clash.add_argument("--ignore-touching", type=float, metavar="LENGTH", help="leave out clashes no deeper, metres")
     command("devices", _devices, "List the devices that contacts can be found on", checks=False)
 

@@ -14,6 +14,7 @@ from . import _core
 from ._arrays import PoseLike, as_count, as_length, as_numbers, as_pose, as_poses
 from ._core import InputError
 from .mesh import Mesh, scaled_parts, split_parts, tell
+from .queries import Separation
 
 
 class Clash(NamedTuple):
@@ -39,6 +40,8 @@ class Clash(NamedTuple):
     box: (2, 3) float64, metres: lowest and highest corner of what both share; where one has no inside, of where their
         surfaces cross. None: they touch, or are near.
     volume: that both share, m^3, if asked for; None where one has no inside.
+    separation: as `separation` finds it, if asked for: the translation of b that parts them. None where one has no
+        inside, and where they touch or are near.
     """
 
     a: str
@@ -57,6 +60,7 @@ class Clash(NamedTuple):
     open: tuple[bool, bool]
     box: Optional[NDArray[np.float64]]
     volume: Optional[float]
+    separation: Optional[Separation]
 
 
 class Fault(NamedTuple):
@@ -200,6 +204,7 @@ def clash(
     tolerance: float = 0.0,
     ignore_touching: Optional[float] = None,
     volumes: bool = False,
+    separations: bool = False,
     threads: int = 0,
     progress: Union[bool, Callable[[float], Any]] = False,
 ) -> Clashes:
@@ -218,6 +223,7 @@ def clash(
     clearance: parts that are no farther apart are found, too: kind "near", metres.
     tolerance: gaps, and depths but of two open parts, up to it are "touching", metres.
     volumes: asks for the volume that two parts share (slow).
+    separations: asks for the translation that parts them (slow: seconds for large parts).
     ignore_touching: leaves out clashes no deeper than this, metres; 0: those that only touch. None leaves out none.
     progress: True draws a bar if tqdm is installed; or a function of what is done, from 0 to 1.
 
@@ -229,10 +235,16 @@ def clash(
     options.against = [against] if isinstance(against, str) else list(against or ())
     options.tolerance = as_length(tolerance, "tolerance")
     options.volumes = bool(volumes)
+    options.separations = bool(separations)
     with _Bar(progress) as bar:
         found, pairs, faults, opened = _core.find_clashes(*given, options, bar.tell)
     names = given[0]
-    clashes = [Clash(names[one[5]], names[one[6]], *one) for one in found]
+
+    def made(one: tuple[Any, ...]) -> Clash:
+        parted = None if one[-1] is None else Separation(*one[-1])
+        return Clash._make((names[one[5]], names[one[6]], *one[:-1], parted))
+
+    clashes = [made(one) for one in found]
     if ignore_touching is not None:
         most = as_length(ignore_touching, "ignore_touching") * (1 + 1e-6)  # depths are float32
         clashes = [one for one in clashes if one.kind == "near" or one.depth is None or one.depth > most]

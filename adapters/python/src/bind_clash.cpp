@@ -78,11 +78,15 @@ nb::tuple tuple_of(const Clash& found) {
     const auto box = [](const AxisBox& b) {
         return array_of(std::vector<double>{b.low.x, b.low.y, b.low.z, b.high.x, b.high.y, b.high.z}, {2, 3});
     };
+    const auto parted = [](const Separation& s) {
+        return nb::make_tuple(s.distance, three(s.normal), three(s.point_a), three(s.point_b));
+    };
     return nb::make_tuple(found.depth, three(found.point),
                           found.normal != Vec3{} ? nb::cast(three(found.normal)) : nb::none(), found.contacts,
                           found.kind == ClashKind::duplicate, found.a, found.b, to_string(found.kind), found.distance,
                           three(found.point_a), three(found.point_b), nb::make_tuple(found.open_a, found.open_b),
-                          found.box ? nb::cast(box(*found.box)) : nb::none(), found.volume);
+                          found.box ? nb::cast(box(*found.box)) : nb::none(), found.volume,
+                          found.separation ? nb::object(parted(*found.separation)) : nb::none());
 }
 
 /// files and parents: of none, or as many as names.
@@ -199,6 +203,7 @@ void bind_clash(nb::module_& m) {
         .def_rw("clearance", &ClashOptions::clearance)
         .def_rw("tolerance", &ClashOptions::tolerance)
         .def_rw("volumes", &ClashOptions::volumes)
+        .def_rw("separations", &ClashOptions::separations)
         .def_rw("threads", &ClashOptions::threads);
     m.def("find_clashes", &find_clashes_of, "names"_a, "meshes"_a, "poses"_a, "files"_a, "parents"_a, "options"_a,
           "progress"_a.none());

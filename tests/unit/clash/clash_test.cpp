@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <set>
 
 namespace raycontact {
@@ -270,6 +271,40 @@ TEST(Clash, ToleranceHoldsForOpenPartsWhereTheirDepthIsKnown) {
     // It goes through: no depth says how far. Nor does one of two sheets.
     EXPECT_EQ(kind(floor, pipe, 1), ClashKind::overlapping);
     EXPECT_EQ(kind(floor, sheet({0, -5, -0.001}, {0, 10, 0}, {0, 0, 10}), 1), ClashKind::overlapping);
+}
+
+TEST(Clash, SeparationsPartWhatSharesMoreThanPoints) {
+    for (const Vec3& off : {Vec3{}, Vec3{691234.5, 5334567.25, 512.125}}) {
+        std::vector<AssemblyPart> parts{
+            box("a", {0, 0, 0}, {4, 4, 4}),         box("corner", {3.75, 3, 3}, {5, 4.5, 4.5}),
+            box("inside", {0.5, 1, 1}, {1, 3, 3}),  box("through", {-1, 1, 3.5}, {5, 2, 3.75}),
+            box("again", {0, 0, 0}, {4, 4, 4}),     box("on it", {0, 0, 4}, {1, 1, 5}),
+            box("off it", {0, 4.125, 0}, {1, 5, 1})};
+        AssemblyPart sheet{"sheet", nullptr, {}};
+        sheet.mesh = std::make_shared<Mesh>(
+            Mesh{"sheet", {{-1, -1, 0.5}, {5, -1, 0.5}, {5, 5, 0.5}, {-1, 5, 0.5}}, {{0, 1, 2}, {0, 2, 3}}});
+        parts.push_back(sheet);
+        for (AssemblyPart& part : parts) part.pose.translation = off;
+        ClashOptions options;
+        options.against = {"a"};
+        options.clearance = 0.25;
+        for (const Clash& c : clashes_of(parts, options)) EXPECT_FALSE(c.separation) << "nobody asked";
+        options.separations = true;
+        const std::map<std::string, double> least{{"corner", 0.25}, {"inside", 1}, {"through", 0.5}, {"again", 4}};
+        std::size_t parted = 0;
+        for (const Clash& c : clashes_of(parts, options)) {
+            const std::string& name = parts[c.b].name;
+            ASSERT_EQ(c.separation.has_value(), least.contains(name)) << name;
+            if (!c.separation) continue;
+            ++parted;
+            EXPECT_NEAR(c.separation->distance, -least.at(name), 0.01 * least.at(name)) << name;
+            const auto shape = [&](std::size_t i) { return Shape::make(prepare_mesh(*parts[i].mesh)); };
+            Pose away = parts[c.b].pose;
+            away.translation = away.translation - c.separation->distance * c.separation->normal;
+            EXPECT_FALSE(intersects(*shape(c.a), parts[c.a].pose, *shape(c.b), away)) << name;
+        }
+        EXPECT_EQ(parted, least.size());
+    }
 }
 
 TEST(Clash, PairsAreChosen) {
