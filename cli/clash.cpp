@@ -2,6 +2,7 @@
 #include "cli/commands.h"
 
 #include "cli/clash_path.h"
+#include "cli/clash_tree.h"
 #include "cli/number_option.h"
 #include "cli/out_option.h"
 #include "cli/program.h"
@@ -57,8 +58,7 @@ struct Options {
     bool components = false, volume = false, separation = false;
     std::uint32_t threads = 0;
     std::string out, csv, bcf, along, range;
-    bool json = false;
-    bool check = false;
+    bool json = false, check = false, tree = false;
 
     bool moves() const { return !along.empty() || !range.empty(); }
 
@@ -102,6 +102,8 @@ std::string json_lines(const Result& result, const Options& options) {
     for (const Clash& c : result.report.clashes) {
         Json line{{"a", result.parts[c.a].name},
                   {"b", result.parts[c.b].name},
+                  {"path_a", path_of(result.parts[c.a])},
+                  {"path_b", path_of(result.parts[c.b])},
                   {"depth", c.depth ? Json(*c.depth) : Json()},
                   {"point", three(c.point)},
                   {"contacts", c.contacts},
@@ -143,8 +145,8 @@ std::string table(const Result& result, const char* unit) {
                                   : !c.depth                  ? "no depth"
                                   : *c.depth > 0              ? fmt::format("{} {}", float(*c.depth), unit)
                                                               : "touching";
-        text += fmt::format("{:>12}  {}  x  {}  at {}, {}, {}{}\n", depth, result.parts[c.a].name,
-                            result.parts[c.b].name, c.point.x, c.point.y, c.point.z, note_of(c, unit));
+        text += fmt::format("{:>12}  {}  x  {}  at {}, {}, {}{}\n", depth, path_of(result.parts[c.a]),
+                            path_of(result.parts[c.b]), c.point.x, c.point.y, c.point.z, note_of(c, unit));
     }
     return text;
 }
@@ -227,6 +229,15 @@ void prepare_parts(std::vector<AssemblyPart>& parts, const Options& options) {
     }
 }
 
+std::vector<AssemblyPart> load(const Options& options) {
+    std::vector<std::string> left_out;
+    std::vector<AssemblyPart> parts = load_parts({options.files.begin(), options.files.end()}, &left_out);
+    if (options.weld || options.length_unit().metres != 1) prepare_parts(parts, options);
+    if (options.components) parts = split_components(parts, &left_out);
+    for (const std::string& line : left_out) std::cerr << line << '\n';
+    return parts;
+}
+
 Result search(const Options& options) {
     ClashOptions how;
     how.against = options.against;
@@ -242,11 +253,7 @@ Result search(const Options& options) {
     how.separations = options.separation;
     how.threads = options.threads;
     Result result;
-    std::vector<std::string> left_out;
-    result.parts = load_parts({options.files.begin(), options.files.end()}, &left_out);
-    if (options.weld || options.length_unit().metres != 1) prepare_parts(result.parts, options);
-    if (options.components) result.parts = split_components(result.parts, &left_out);
-    for (const std::string& line : left_out) std::cerr << line << '\n';
+    result.parts = load(options);
     if (result.parts.size() < 2)
         throw InputError(options.files[0]
                          + (options.components ? ": --components finds one part; give several files"
@@ -305,6 +312,11 @@ void run_path(const Options& options) {
 }
 
 void run_clash(const Options& options) {
+    if (options.tree) {
+        const std::vector<AssemblyPart> parts = load(options);
+        std::cout << (options.json ? tree_json(parts) : tree_text(parts)) << std::flush;
+        return;
+    }
     if (options.moves()) return run_path(options);
     if (!options.bcf.empty() && options.unit.empty())
         throw InputError("--bcf: has metres, and nothing says which unit the files have; give --unit m, mm, cm or in");
@@ -347,7 +359,7 @@ void add_clash(CLI::App& app) {
     // One word each, so that FILES may follow.
     command
         ->add_option("--against", options->against,
-                     "test parts or files of this name (* and ? stand for any) against "
+                     "test parts or files of this name (* and ? stand for any; with / what ends a path) against "
                      "all others, and no more; may be given again")
         ->type_name("SET")
         ->expected(1)
@@ -399,6 +411,7 @@ void add_clash(CLI::App& app) {
     add_out(*command, "--bcf", options->bcf,
             "write the clashes there as topics of BIM Collaboration Format 2.1; needs --unit")
         ->type_name("FILE.bcfzip");
+    command->add_flag("--tree", options->tree, "print the parts and the nodes that they are under, and search nothing");
     command->add_flag("--json", options->json, "print one JSON line a clash on stdout");
     command->add_flag("--check", options->check, "exit status 3 where parts clash");
     command->footer(

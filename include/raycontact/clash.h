@@ -65,8 +65,9 @@ struct Clash {
 
 /// What find_clashes() looks for.
 struct ClashOptions {
-    /// Patterns of names of parts or files ("*" stands for any text, "?" for a character). Parts that match are tested
-    /// against all that do not. Empty: all against all.
+    /// Patterns of names of parts or files ("*" stands for any text, "?" for a character); with "/" also of path_of()
+    /// or its end, so that "Floor 2/*" are all parts under nodes of that name. Parts that match are tested against all
+    /// that do not. Empty: all against all.
     std::vector<std::string> against{};
     /// Pairs of such patterns: parts of which one matches either are not tested against each other.
     std::vector<std::array<std::string, 2>> exclude{};
@@ -92,7 +93,8 @@ struct ClashReport {
 };
 
 /// The parts of all files, in their order (load_assembly), under names that differ: where several have the same, the
-/// file is set before it, or a number is added. left_out: gets a line for each thing that was left out or mended, with
+/// file is set before it, or a number is added. Of several files each is the root of what its parts are under, unless
+/// it is one part of that name. left_out: gets a line for each thing that was left out or mended, with
 /// the file before it. Throws InputError as load_mesh().
 RAYCONTACT_API std::vector<AssemblyPart> load_parts(const std::vector<std::filesystem::path>& files,
                                                     std::vector<std::string>* left_out = nullptr);

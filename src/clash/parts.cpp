@@ -74,6 +74,8 @@ std::vector<AssemblyPart> load_parts(const std::vector<std::filesystem::path>& f
         const std::size_t first = parts.size();
         for (AssemblyPart& part : loaded[i].parts) {
             if (part.parent != AssemblyPart::no_part) part.parent += first;
+            if (files.size() > 1 && part.name != files[i].filename().string())
+                part.under.insert(part.under.begin(), part.file);
             parts.push_back(std::move(part));
         }
         if (left_out != nullptr)

@@ -31,10 +31,20 @@ bool matches(std::string_view pattern, std::string_view text) {
     return pattern.find_first_not_of('*', p) == none;
 }
 
-/// The parts that patterns match, by their names, files, or the names of these without folders.
+/// A path, or its end from some node on.
+bool matches_path(std::string_view pattern, std::string_view path) {
+    for (;;) {
+        if (matches(pattern, path)) return true;
+        const std::size_t node = path.find('/');
+        if (node == std::string_view::npos) return false;
+        path.remove_prefix(node + 1);
+    }
+}
+
+/// The parts that patterns match, by their names, files, or the names of these without folders; with "/" by paths, too.
 class Names {
 public:
-    explicit Names(std::span<const AssemblyPart> parts) {
+    explicit Names(std::span<const AssemblyPart> parts) : all_(parts) {
         for (std::size_t i = 0; i < parts.size(); ++i) {
             add(parts[i].name, i);
             if (parts[i].file.empty()) continue;
@@ -54,9 +64,13 @@ public:
             for (const auto& [name, parts] : parts_of_)
                 if (matches(pattern, name)) add_all(parts);
         }
+        if (pattern.find('/') != std::string::npos)
+            for (std::size_t i = 0; i < all_.size(); ++i)
+                if (matches_path(pattern, path_of(all_[i]))) found.push_back(i);
         if (found.empty())
-            throw InputError(what + ": no part and no file is called \"" + pattern
-                             + "\"; give a name as clash prints it, or a pattern with * or ?");
+            throw InputError(
+                what + ": no part and no file is called \"" + pattern
+                + "\"; give a name as clash prints it, or a pattern with * or ?, or with / as clash --tree has it");
         std::sort(found.begin(), found.end());
         found.erase(std::unique(found.begin(), found.end()), found.end());
         return found;
@@ -64,6 +78,7 @@ public:
 
 private:
     void add(const std::string& name, std::size_t part) { parts_of_[name].push_back(part); }
+    std::span<const AssemblyPart> all_;
     std::unordered_map<std::string, std::vector<std::size_t>> parts_of_;
 };
 
@@ -86,7 +101,8 @@ Selection::Selection(std::span<const AssemblyPart> parts, const ClashOptions& op
         for (const std::string& pattern : options.against)
             for (const std::size_t part : names.matched(pattern, word)) against_[part] = 1;
         if (std::ranges::all_of(against_, [](char matched) { return matched != 0; }))
-            throw InputError(std::string(word) + ": all parts match, so there is nothing to test them against; name fewer");
+            throw InputError(std::string(word)
+                             + ": all parts match, so there is nothing to test them against; name fewer");
     }
     if (options.exclude.empty()) return;
     for (std::size_t k = 0; k < 2; ++k) {

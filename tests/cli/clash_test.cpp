@@ -99,7 +99,7 @@ TEST_F(Clash, DeepestFirstByFileName) {
         << "boxes of a and c do not touch; no progress bar where nobody sees it";
     const auto found = json_lines(result.out);
     ASSERT_EQ(found.size(), 2u);
-    EXPECT_EQ(keys_of(found[0]), (std::set<std::string>{"a", "b", "depth", "point", "contacts", "duplicate", "normal",
+    EXPECT_EQ(keys_of(found[0]), (std::set<std::string>{"a", "b", "path_a", "path_b", "depth", "point", "contacts", "duplicate", "normal",
                                                         "kind", "distance", "point_a", "point_b", "open", "box"}));
     EXPECT_EQ(found[0]["a"], "b.obj");
     EXPECT_EQ(found[0]["b"], "c.obj");
@@ -420,6 +420,36 @@ TEST_F(Clash, PartsUnderOtherParts) {
     EXPECT_EQ(found["a"], "flange");
     EXPECT_EQ(found["b"], "bolt");
     EXPECT_EQ(found["kind"], "duplicate");
+
+    // Nodes without a mesh are told, too: in paths, which patterns match, and as a tree.
+    EXPECT_EQ(found["path_a"], "pump/flange");
+    EXPECT_EQ(found["path_b"], "pump/group/bolt");
+    EXPECT_EQ(clashes({"tree.gltf", "--against", "group/*"}).size(), 2u);
+    EXPECT_EQ(clashes({"tree.gltf", "--against", "pump/*"}).size(), 2u) << "not the pump itself";
+    EXPECT_NE(run({"tree.gltf"}).out.find("  pump/flange  x  pump/group/bolt  at "), std::string::npos);
+    EXPECT_EQ(run({"tree.gltf", "--tree"}).out, "pump  (12 triangles)\n"
+                                                "pump/\n"
+                                                "  flange  (12 triangles)\n"
+                                                "  group/\n"
+                                                "    bolt  (12 triangles)\n");
+    write_cube("post.obj", 1.8);
+    EXPECT_EQ(run({"tree.gltf", "post.obj", "--tree"}).out, "tree.gltf/\n"
+                                                            "  pump  (12 triangles)\n"
+                                                            "  pump/\n"
+                                                            "    flange  (12 triangles)\n"
+                                                            "    group/\n"
+                                                            "      bolt  (12 triangles)\n"
+                                                            "post.obj  (12 triangles)\n");
+    const auto lines = json_lines(run({"tree.gltf", "post.obj", "--tree", "--json"}).out);
+    ASSERT_EQ(lines.size(), 4u);
+    EXPECT_EQ(lines[2]["path"], "tree.gltf/pump/group/bolt");
+    EXPECT_EQ(lines[2]["under"], (json{"tree.gltf", "pump", "group"}));
+    EXPECT_EQ(clashes({"tree.gltf", "post.obj", "--against", "tree.gltf/*"}).size(), 2u);
+    // A name that two files have gets its file; paths tell that once.
+    std::ofstream(folder_.path() / "more.gltf") << root.dump();
+    const json again = json_lines(run({"tree.gltf", "more.gltf", "--tree", "--json"}).out)[5];
+    EXPECT_EQ(again["name"], "more.gltf:bolt");
+    EXPECT_EQ(again["path"], "more.gltf/pump/group/bolt");
 }
 
 TEST_F(Clash, Table) {

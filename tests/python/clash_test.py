@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Clashes of an assembly from Python."""
 
+import base64
 import json
 
 import meshes
@@ -50,6 +51,56 @@ def test_kinds_boxes_and_volumes():
     assert "one through the other" in str(found) and "0.125 m apart" in str(found) and near.open == (False, False)
     assert rc.clash(parts, clearance=0.125, ignore_touching=9)[0].kind == "near"
     assert [one.kind for one in rc.clash(row(0, 0.999, 2.0), tolerance=0.0011)] == ["touching"] * 2
+
+
+def tree(file, places):
+    """Writes a glTF file of boxes of 1 m under nodes: places by path, "hall/pipe 1"."""
+    vertices, faces = meshes.box()
+    data = np.asarray(vertices, np.float32).tobytes() + np.asarray(faces, np.uint32).tobytes()
+    nodes, numbers = [], {}
+    for path, place in places.items():
+        names = path.split("/")
+        for depth in range(1, len(names) + 1):
+            own = "/".join(names[:depth])
+            if own not in numbers:
+                numbers[own] = len(nodes)
+                nodes.append({"name": names[depth - 1]})
+                if depth > 1:
+                    nodes[numbers["/".join(names[: depth - 1])]].setdefault("children", []).append(numbers[own])
+        nodes[numbers[path]] |= {"mesh": 0, "translation": [place, 0, 0]}
+    views = [{"buffer": 0, "byteOffset": start, "byteLength": size} for start, size in
+             ((0, 12 * len(vertices)), (12 * len(vertices), 12 * len(faces)))]  # fmt: skip
+    accessors = [
+        {"bufferView": 0, "componentType": 5126, "count": len(vertices), "type": "VEC3"},
+        {"bufferView": 1, "componentType": 5125, "count": 3 * len(faces), "type": "SCALAR"},
+    ]
+    uri = "data:application/octet-stream;base64," + base64.b64encode(data).decode()
+    roots = [numbers[path] for path in numbers if "/" not in path]
+    primitive = {"attributes": {"POSITION": 0}, "indices": 1}
+    file.write_text(json.dumps({
+        "asset": {"version": "2.0"}, "scenes": [{"nodes": roots}], "nodes": nodes, "accessors": accessors,
+        "meshes": [{"primitives": [primitive]}], "bufferViews": views,
+        "buffers": [{"byteLength": len(data), "uri": uri}],
+    }))  # fmt: skip
+    return file
+
+
+def test_paths_of_nodes_are_told_and_match(tmp_path):
+    hall = tree(
+        tmp_path / "hall.gltf", {"hall/pipes/pipe": 0, "hall/pipes/valve": 0.75, "hall/wall": 1.5, "post": 2.25}
+    )
+    found = rc.clash(hall)
+    assert found.paths == ["hall/pipes/pipe", "hall/pipes/valve", "hall/wall", "post"]
+    assert found.parts == ["pipe", "valve", "wall", "post"] and len(found) == 3
+    assert "hall/pipes/pipe  x  hall/pipes/valve" in str(found)
+
+    def pairs(**options):
+        return [(one.a, one.b) for one in rc.clash(hall, **options)]
+
+    assert pairs(against="pipes/*") == [("valve", "wall")] and pairs(against="hall/*") == [("wall", "post")]
+    assert pairs(exclude=[("pipes/*", "hall/*")]) == [("wall", "post")]
+    assert pairs(against="pipes/*", components=True) == [("valve", "wall")]
+    assert rc.clash([("a/b", BOX, None), ("c", BOX, None)], against="a/*").paths == ["a/b", "c"]
 
 
 def test_separations_part_what_clashes():

@@ -9,6 +9,7 @@ import json
 import sys
 import warnings
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
@@ -89,7 +90,9 @@ def _clash(options: argparse.Namespace) -> int:
     if options.json:
         for one in found:
             normal = None if one.normal is None else one.normal.tolist()
-            line = {"a": one.a, "b": one.b, "depth": one.depth, "point": one.point.tolist(), "contacts": one.contacts}
+            line: dict[str, Any] = {"a": one.a, "b": one.b}
+            line |= {"path_a": found.paths[one.index_a], "path_b": found.paths[one.index_b]}
+            line |= {"depth": one.depth, "point": one.point.tolist(), "contacts": one.contacts}
             line |= {"duplicate": one.duplicate, "normal": normal, "kind": one.kind, "distance": one.distance}
             line |= {"point_a": one.point_a.tolist(), "point_b": one.point_b.tolist()}
             line["open"] = [name for name, is_open in zip("ab", one.open, strict=True) if is_open]

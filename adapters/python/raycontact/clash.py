@@ -107,8 +107,19 @@ class _Found(Sequence[_One]):
 class Clashes(_Found[Clash]):
     """Clashes, the deepest first, then those without a depth, that touch, that are near."""
 
-    def __init__(self, clashes: list[Clash], parts: list[str], pairs: int, faults: list[Fault], open: list[str]):
+    def __init__(
+        self,
+        clashes: list[Clash],
+        parts: list[str],
+        pairs: int,
+        faults: list[Fault],
+        open: list[str],
+        paths: list[str],
+    ):
         super().__init__(clashes, parts, pairs, faults)
+        self.paths = paths
+        """Of all parts, of files with a tree the names of the nodes that they are under before their own, with "/"
+        between: "Building/Floor 2/Pipe 7"."""
         self.open = open
         """Parts without an inside."""
 
@@ -123,7 +134,8 @@ class Clashes(_Found[Clash]):
             depth = f"{clash.distance:.4g} m apart" if clash.kind == "near" else "touching"
             if clash.kind not in ("near", "touching"):
                 depth = "no depth" if clash.depth is None else f"{clash.depth:.4g} m"
-            lines.append(f"{depth:>12}  {clash.a}  x  {clash.b}{_NOTES.get(clash.kind, '')}")
+            a, b = self.paths[clash.index_a], self.paths[clash.index_b]
+            lines.append(f"{depth:>12}  {a}  x  {b}{_NOTES.get(clash.kind, '')}")
         lines.append(repr(self)[1:-1])
         if self.open:
             lines.append(f"open, so that nothing is inside: {_some(self.open)}")
@@ -218,7 +230,8 @@ def clash(
     weld: as `Mesh` has it, of each part by itself, after scale.
     components: splits each part into what is closed by itself, with its cavities, and what is open and shares vertices;
         those of a part are "NAME #1", "NAME #2", ...
-    against: names of parts or files, "*" and "?" stand for any: they are tested against all others, and no more.
+    against: names of parts or files, "*" and "?" stand for any; with "/" also what ends one of `Clashes.paths`, so that
+        "Floor 2/*" are all parts under nodes of that name: they are tested against all others, and no more.
     exclude: pairs of such names that are left out; and "parent-child", for nodes of a glTF file and those under them.
     clearance: parts that are no farther apart are found, too: kind "near", metres.
     tolerance: gaps, and depths but of two open parts, up to it are "touching", metres.
@@ -237,7 +250,7 @@ def clash(
     options.volumes = bool(volumes)
     options.separations = bool(separations)
     with _Bar(progress) as bar:
-        found, pairs, faults, opened = _core.find_clashes(*given, options, bar.tell)
+        found, pairs, faults, opened, paths = _core.find_clashes(*given, options, bar.tell)
     names = given[0]
 
     def made(one: tuple[Any, ...]) -> Clash:
@@ -248,7 +261,7 @@ def clash(
     if ignore_touching is not None:
         most = as_length(ignore_touching, "ignore_touching") * (1 + 1e-6)  # depths are float32
         clashes = [one for one in clashes if one.kind == "near" or one.depth is None or one.depth > most]
-    return Clashes(clashes, names, pairs, _faults(names, faults), [names[i] for i in opened])
+    return Clashes(clashes, names, pairs, _faults(names, faults), [names[i] for i in opened], paths)
 
 
 def clash_along(
@@ -305,15 +318,15 @@ def clash_along(
     )
 
 
-_Given = tuple[list[str], list[_core.Mesh], NDArray[np.float64], list[str], list[int]]
+_Given = tuple[list[str], list[_core.Mesh], NDArray[np.float64], list[str], list[int], list[list[str]]]
 
 
 def _given(assembly: Any, scale: float, weld: Optional[float], components: bool) -> _Given:
-    """Names, meshes, poses, files and parents of the parts, as the C++ half takes them."""
-    given, files, parents = _parts_of(assembly)
+    """Names, meshes, poses and the rest of the parts, as the C++ half takes them."""
+    given, files, parents, unders = _parts_of(assembly)
     parts = scaled_parts(given, scale, weld)
     if components and parts:
-        parts, files, parents = split_parts(parts, files, parents)
+        parts, files, parents, unders = split_parts(parts, files, parents, unders)
     if len(parts) < 2:
         more = "" if components else "; components=True splits parts further"
         raise InputError(
@@ -321,7 +334,7 @@ def _given(assembly: Any, scale: float, weld: Optional[float], components: bool)
             + more
         )
     poses = np.ascontiguousarray(np.stack([part.pose for part in parts]))
-    return [part.name for part in parts], [part.mesh._core for part in parts], poses, files, parents
+    return [part.name for part in parts], [part.mesh._core for part in parts], poses, files, parents, unders
 
 
 def _options(exclude: Iterable[Union[str, tuple[str, str]]], clearance: float, threads: int) -> _core.ClashOptions:
@@ -350,11 +363,11 @@ def _excluded(exclude: Iterable[Union[str, tuple[str, str]]]) -> tuple[list[tupl
     return pairs, parent_child
 
 
-_Parts = tuple[list[tuple[str, _core.Mesh, NDArray[np.float64]]], list[str], list[int]]
+_Parts = tuple[list[tuple[str, _core.Mesh, NDArray[np.float64]]], list[str], list[int], list[list[str]]]
 
 
 def _parts_of(assembly: Any) -> _Parts:
-    """The parts; and their files and parents, of parts from files."""
+    """The parts; and, of parts from files, these, their parents and the names of what they are under."""
     if isinstance(assembly, (str, os.PathLike)):
         assembly = [assembly]
     if hasattr(assembly, "graph") and hasattr(assembly, "geometry"):  # of trimesh
@@ -367,7 +380,7 @@ def _parts_of(assembly: Any) -> _Parts:
     if assembly and all(isinstance(item, (str, os.PathLike)) for item in assembly):
         parts, left_out = _core.load_parts([os.fspath(file) for file in assembly])
         tell(left_out)
-        return parts  # with files and parents
+        return parts
     made: dict[int, Mesh] = {}
     parts = []
     for i, item in enumerate(assembly):
@@ -377,7 +390,7 @@ def _parts_of(assembly: Any) -> _Parts:
             made[id(mesh)] = mesh if isinstance(mesh, Mesh) else Mesh(mesh)
         own = made[id(mesh)]
         parts.append((str(name if name is not None else own.name or i), own._core, matrices.copy()))
-    return parts, [], []
+    return parts, [], [], []
 
 
 class _Bar:

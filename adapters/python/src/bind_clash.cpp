@@ -58,15 +58,16 @@ private:
     std::exception_ptr failure_;
 };
 
-/// Names, meshes and poses, then files and parents, -1 for none.
+/// Names, meshes and poses, then files, parents, -1 for none, and what they are under.
 nb::tuple tuples_of(const std::vector<AssemblyPart>& parts) {
-    nb::list list, files, parents;
+    nb::list list, files, parents, unders;
     for (const AssemblyPart& part : parts) {
         list.append(nb::make_tuple(part.name, std::const_pointer_cast<Mesh>(part.mesh), matrices_of({&part.pose, 1})));
         files.append(part.file);
+        unders.append(part.under);
         parents.append(part.parent == AssemblyPart::no_part ? std::ptrdiff_t{-1} : std::ptrdiff_t(part.parent));
     }
-    return nb::make_tuple(list, files, parents);
+    return nb::make_tuple(list, files, parents, unders);
 }
 
 Array three(const Vec3& v) {
@@ -89,20 +90,23 @@ nb::tuple tuple_of(const Clash& found) {
                           found.separation ? nb::object(parted(*found.separation)) : nb::none());
 }
 
-/// files and parents: of none, or as many as names.
+using Unders = std::vector<std::vector<std::string>>; ///< AssemblyPart::under
+
+/// files, parents and unders: of none, or as many as names.
 std::vector<AssemblyPart> parts_from(const std::vector<std::string>& names,
                                      const std::vector<std::shared_ptr<Mesh>>& meshes, const Matrices& matrices,
-                                     const std::vector<std::string>& files,
-                                     const std::vector<std::ptrdiff_t>& parents) {
+                                     const std::vector<std::string>& files, const std::vector<std::ptrdiff_t>& parents,
+                                     const Unders& unders) {
     const auto fits = [&](std::size_t size) { return size == names.size(); };
     if (!fits(meshes.size()) || !fits(matrices.shape(0)) || (!files.empty() && !fits(files.size()))
-        || (!parents.empty() && !fits(parents.size())))
+        || (!parents.empty() && !fits(parents.size())) || (!unders.empty() && !fits(unders.size())))
         throw nb::value_error("clash: as many names, meshes and poses are needed");
     std::vector<AssemblyPart> parts;
     for (std::size_t i = 0; i < names.size(); ++i) {
         if (!meshes[i]) throw nb::value_error("clash: a mesh is None");
         AssemblyPart part{names[i], meshes[i], pose_at(matrices, i)};
         if (!files.empty()) part.file = files[i];
+        if (!unders.empty()) part.under = unders[i];
         if (!parents.empty() && parents[i] >= 0) part.parent = std::size_t(parents[i]);
         parts.push_back(std::move(part));
     }
@@ -133,17 +137,19 @@ nb::list faults_of(const auto& report) {
     return faults;
 }
 
-/// files and parents: as parts_from() has them.
+/// files, parents and unders: as parts_from() has them.
 nb::tuple find_clashes_of(const std::vector<std::string>& names, const std::vector<std::shared_ptr<Mesh>>& meshes,
                           const Matrices& matrices, const std::vector<std::string>& files,
-                          const std::vector<std::ptrdiff_t>& parents, const ClashOptions& options,
+                          const std::vector<std::ptrdiff_t>& parents, const Unders& unders, const ClashOptions& options,
                           const nb::object& progress) {
-    const std::vector<AssemblyPart> parts = parts_from(names, meshes, matrices, files, parents);
+    const std::vector<AssemblyPart> parts = parts_from(names, meshes, matrices, files, parents, unders);
     const ClashReport report =
         found_by([&](const ClashOptions& how) { return find_clashes(parts, how); }, options, progress);
     nb::list found;
     for (const Clash& one : report.clashes) found.append(tuple_of(one));
-    return nb::make_tuple(found, report.pairs, faults_of(report), nb::cast(report.open));
+    nb::list paths;
+    for (const AssemblyPart& part : parts) paths.append(path_of(part));
+    return nb::make_tuple(found, report.pairs, faults_of(report), nb::cast(report.open), paths);
 }
 
 /// In the order of the fields of Python's PathClash, without the names.
@@ -154,9 +160,10 @@ nb::tuple tuple_of(const PathClash& found) {
 
 nb::tuple find_path_clashes_of(const std::vector<std::string>& names, const std::vector<std::shared_ptr<Mesh>>& meshes,
                                const Matrices& matrices, const std::vector<std::string>& files,
-                               const std::vector<std::ptrdiff_t>& parents, const std::vector<std::string>& moving,
-                               const Matrices& moves, const ClashOptions& options, const nb::object& progress) {
-    const std::vector<AssemblyPart> parts = parts_from(names, meshes, matrices, files, parents);
+                               const std::vector<std::ptrdiff_t>& parents, const Unders& unders,
+                               const std::vector<std::string>& moving, const Matrices& moves,
+                               const ClashOptions& options, const nb::object& progress) {
+    const std::vector<AssemblyPart> parts = parts_from(names, meshes, matrices, files, parents, unders);
     const std::vector<Pose> path = poses_of(moves);
     const PathClashReport report = found_by(
         [&](const ClashOptions& how) { return find_path_clashes(parts, moving, path, how); }, options, progress);
@@ -184,9 +191,9 @@ void bind_clash(nb::module_& m) {
     m.def(
         "split_components",
         [](const std::vector<std::string>& names, const std::vector<std::shared_ptr<Mesh>>& meshes,
-           const Matrices& matrices, const std::vector<std::string>& files,
-           const std::vector<std::ptrdiff_t>& parents) {
-            std::vector<AssemblyPart> parts = parts_from(names, meshes, matrices, files, parents);
+           const Matrices& matrices, const std::vector<std::string>& files, const std::vector<std::ptrdiff_t>& parents,
+           const Unders& unders) {
+            std::vector<AssemblyPart> parts = parts_from(names, meshes, matrices, files, parents, unders);
             std::vector<std::string> left_out;
             {
                 const WithoutGil without_gil;
@@ -194,7 +201,7 @@ void bind_clash(nb::module_& m) {
             }
             return nb::make_tuple(tuples_of(parts), left_out);
         },
-        "names"_a, "meshes"_a, "poses"_a, "files"_a, "parents"_a);
+        "names"_a, "meshes"_a, "poses"_a, "files"_a, "parents"_a, "unders"_a);
     nb::class_<ClashOptions>(m, "ClashOptions")
         .def(nb::init<>())
         .def_rw("against", &ClashOptions::against)
@@ -205,10 +212,10 @@ void bind_clash(nb::module_& m) {
         .def_rw("volumes", &ClashOptions::volumes)
         .def_rw("separations", &ClashOptions::separations)
         .def_rw("threads", &ClashOptions::threads);
-    m.def("find_clashes", &find_clashes_of, "names"_a, "meshes"_a, "poses"_a, "files"_a, "parents"_a, "options"_a,
-          "progress"_a.none());
+    m.def("find_clashes", &find_clashes_of, "names"_a, "meshes"_a, "poses"_a, "files"_a, "parents"_a, "unders"_a,
+          "options"_a, "progress"_a.none());
     m.def("find_path_clashes", &find_path_clashes_of, "names"_a, "meshes"_a, "poses"_a, "files"_a, "parents"_a,
-          "moving"_a, "moves"_a, "options"_a, "progress"_a.none());
+          "unders"_a, "moving"_a, "moves"_a, "options"_a, "progress"_a.none());
 }
 
 } // namespace raycontact::python

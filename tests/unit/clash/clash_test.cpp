@@ -324,8 +324,19 @@ TEST(Clash, PairsAreChosen) {
     EXPECT_EQ(pairs({.against = {"folder/*", "part 3"}}), (Pairs{{1, 2}, {3, 4}})) << "not within";
     EXPECT_EQ(pairs({.exclude = {{"part 1", "part ?"}, {"*5", "part 4"}}}), (Pairs{{2, 3}, {3, 4}}));
     EXPECT_EQ(pairs({.exclude_parent_child = true}), (Pairs{{0, 1}, {1, 2}, {2, 3}, {4, 5}}));
+    // Paths, and what ends them; a node's name alone is none.
+    parts[0].under = {"Building", "Floor 2"};
+    parts[1].under = {"Building", "Floor 2", "Pipes"};
+    parts[3].under = {"Building", "Floor 12"};
+    EXPECT_EQ(path_of(parts[1]), "Building/Floor 2/Pipes/part 1");
+    EXPECT_EQ(path_of(parts[5]), "part 5");
+    EXPECT_EQ(pairs({.against = {"Floor 2/*"}}), (Pairs{{1, 2}}));
+    EXPECT_EQ(pairs({.against = {"Building/*"}}), (Pairs{{1, 2}, {2, 3}, {3, 4}}));
+    EXPECT_EQ(pairs({.against = {"Floor*/part 0", "Floor 12/part 3"}}), (Pairs{{0, 1}, {2, 3}, {3, 4}}));
+    EXPECT_EQ(pairs({.exclude = {{"Floor 2/*", "Pipes/*"}}}), (Pairs{{1, 2}, {2, 3}, {3, 4}, {4, 5}}));
     for (const ClashOptions& options :
-         {ClashOptions{.against = {"part 9"}}, ClashOptions{.against = {"*9"}}, ClashOptions{.against = {"*"}},
+         {ClashOptions{.against = {"Floor 2"}}, ClashOptions{.against = {"loor 2/*"}},
+          ClashOptions{.against = {"part 9"}}, ClashOptions{.against = {"*9"}}, ClashOptions{.against = {"*"}},
           ClashOptions{.exclude = {{"part 1", "parts"}}}, ClashOptions{.clearance = -1},
           ClashOptions{.tolerance = std::nan("")}, ClashOptions{.threads = 5000}})
         EXPECT_THROW(find_clashes(parts, options), InputError);
