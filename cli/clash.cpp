@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/commands.h"
 
+#include "cli/clash_clearance.h"
 #include "cli/clash_path.h"
 #include "cli/clash_tree.h"
+#include "cli/length_unit.h"
 #include "cli/number_option.h"
 #include "cli/out_option.h"
 #include "cli/program.h"
@@ -43,16 +45,10 @@ namespace {
 using namespace raycontact;
 using Json = nlohmann::ordered_json;
 
-struct Unit {
-    const char* name;
-    double metres;
-};
-constexpr std::array units{Unit{"m", 1}, Unit{"mm", 1e-3}, Unit{"cm", 1e-2}, Unit{"in", 0.0254}};
-
 /// Lengths are in the unit of the files.
 struct Options {
-    std::vector<std::string> files, against, exclude;
-    double clearance = 0, tolerance = 0;
+    std::vector<std::string> files, against, exclude, clearance;
+    double tolerance = 0;
     std::optional<double> ignore_touching, weld;
     std::string unit; ///< empty: not told
     bool components = false, volume = false, separation = false;
@@ -62,11 +58,7 @@ struct Options {
 
     bool moves() const { return !along.empty() || !range.empty(); }
 
-    const Unit& length_unit() const {
-        for (const Unit& known : units)
-            if (unit == known.name) return known;
-        return units[0];
-    }
+    LengthUnit length_unit() const { return unit.empty() ? length_units[0] : *raycontact::length_unit(unit); }
 };
 
 bool ends_in_3mf(const std::string& file) {
@@ -247,7 +239,7 @@ Result search(const Options& options) {
         else
             read_excluded(excluded, how);
     }
-    how.clearance = options.clearance;
+    set_clearances(options.clearance, options.unit, how);
     how.tolerance = options.tolerance;
     how.volumes = options.volume;
     how.separations = options.separation;
@@ -324,7 +316,7 @@ void run_clash(const Options& options) {
     auto csv = claim(options.files, "--csv", options.csv, ".csv");
     auto bcf = claim(options.files, "--bcf", options.bcf, ".bcfzip");
     const Result result = search(options);
-    const Unit& unit = options.length_unit();
+    const LengthUnit unit = options.length_unit();
     if (options.json) {
         std::cout << json_lines(result, options) << std::flush;
         std::cerr << summary(result);
@@ -385,7 +377,13 @@ void add_clash(CLI::App& app) {
     const auto add_length = [&](const char* option, auto& length, const char* help) {
         add_number(*command, option, length, help, 0.0, most)->type_name("LENGTH");
     };
-    add_length("--clearance", options->clearance, "also find parts that are no farther apart than this");
+    command
+        ->add_option("--clearance", options->clearance,
+                     "also find parts that are no farther apart than this; LENGTH:SET: those of which one is of this "
+                     "name or pattern, LENGTH:SET:SET: and the other of that; may be given again: the largest counts")
+        ->type_name("LENGTH")
+        ->expected(1)
+        ->take_all();
     add_length("--tolerance", options->tolerance, "depths and gaps up to this are touching");
     add_length("--ignore-touching", options->ignore_touching,
                "leave out clashes no deeper than this; 0: those that only touch. Those without a depth stay");
@@ -395,7 +393,7 @@ void add_clash(CLI::App& app) {
                                  with_3mf("; 3MF says its own and is brought to this one")))
         ->type_name("UNIT")
         ->check([](const std::string& word) {
-            if (std::ranges::any_of(units, [&](const Unit& unit) { return word == unit.name; })) return std::string();
+            if (length_unit(word)) return std::string();
             return "\"" + word + "\" is no unit; give m, mm, cm or in";
         });
     add_weld_option(*command, options->weld)->type_name("LENGTH");

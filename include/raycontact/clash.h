@@ -63,6 +63,13 @@ struct Clash {
     std::optional<Separation> separation;
 };
 
+/// How near some pairs may come.
+struct ClearanceOf {
+    double clearance = 0; ///< metres
+    /// Patterns as of ClashOptions::against: of pairs of which one part matches the one, and the other the other.
+    std::array<std::string, 2> parts{"*", "*"};
+};
+
 /// What find_clashes() looks for.
 struct ClashOptions {
     /// Patterns of names of parts or files ("*" stands for any text, "?" for a character); with "/" also of path_of()
@@ -71,12 +78,13 @@ struct ClashOptions {
     std::vector<std::string> against{};
     /// Pairs of such patterns: parts of which one matches either are not tested against each other.
     std::vector<std::array<std::string, 2>> exclude{};
-    bool exclude_parent_child = false; ///< leaves out pairs of a part and its AssemblyPart::parent
-    double clearance = 0;              ///< metres; pairs not farther apart are `near`
-    double tolerance = 0;              ///< metres; gaps, and depths but of two open parts, up to it are `touching`
-    bool volumes = false;              ///< asks for Clash::volume: seconds for parts of 100 000 triangles
-    bool separations = false;          ///< asks for Clash::separation: some times the search, seconds for large parts
-    std::uint32_t threads = 0;         ///< 0: one per core; no result depends on it
+    bool exclude_parent_child = false;     ///< leaves out pairs of a part and its AssemblyPart::parent
+    double clearance = 0;                  ///< metres; pairs not farther apart are `near`
+    std::vector<ClearanceOf> clearances{}; ///< of some pairs; of all that apply, and `clearance`, the largest counts
+    double tolerance = 0;                  ///< metres; gaps, and depths but of two open parts, up to it are `touching`
+    bool volumes = false;                  ///< asks for Clash::volume: seconds for parts of 100 000 triangles
+    bool separations = false;  ///< asks for Clash::separation: some times the search, seconds for large parts
+    std::uint32_t threads = 0; ///< 0: one per core; no result depends on it
     /// Told what is done, from 0 to 1; from any thread, but from one at a time.
     std::function<void(double)> progress = [](double) {};
     std::function<bool()> stop = [] { return false; }; ///< asked on any thread; true: the search ends there
@@ -87,7 +95,7 @@ struct ClashReport {
     /// Deepest first, then those without a depth, then those that touch, then those that are near, the nearest first;
     /// ties in the parts' order.
     std::vector<Clash> clashes;
-    std::size_t pairs = 0; ///< that were tested: their boxes, grown by clearance or tolerance, touch
+    std::size_t pairs = 0; ///< that were tested: their boxes are no farther apart than clearance or tolerance
     std::vector<std::pair<std::size_t, std::string>> faults; ///< parts that could not be tested, and why; rising
     std::vector<std::size_t> open;                           ///< parts that were tested and have no inside; rising
 };
@@ -126,8 +134,8 @@ struct PathClash {
 
 /// What find_path_clashes() finds.
 struct PathClashReport {
-    /// Those that meet, the first one first; then those that come no farther apart than ClashOptions::clearance, the
-    /// nearest first; ties in the parts' order.
+    /// Those that meet, the first one first; then those that come no farther apart than their clearance, the nearest
+    /// first; ties in the parts' order.
     std::vector<PathClash> clashes;
     /// Of all that stay apart those that come nearest to each other: the least clearance on the way.
     std::optional<PathClash> nearest;
@@ -139,7 +147,8 @@ struct PathClashReport {
 /// moving: patterns of their names. moves: poses that bring them from where they are placed to where they are at times
 /// 0, 1, ..., in the frame of the assembly, by a screw from each to the next (time_of_impact()); one at least. Times,
 /// distances and tolerances are those of path_clearance(). Of options count exclude, exclude_parent_child, clearance,
-/// threads, progress and stop. Throws InputError as find_clashes(), and for moves that are none or not rigid.
+/// clearances, threads, progress and stop. Throws InputError as find_clashes(), and for moves that are none or not
+/// rigid.
 RAYCONTACT_API PathClashReport find_path_clashes(std::span<const AssemblyPart> parts,
                                                  const std::vector<std::string>& moving, std::span<const Pose> moves,
                                                  const ClashOptions& options = {});

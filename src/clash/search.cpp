@@ -57,12 +57,12 @@ struct Answer {
     BodyId body_a{};            ///< of a in the scene
 };
 
-Answer gap_between(const PartPair& pair, const Part& a, const Part& b, const ClashOptions& options) {
-    const double reach = std::max(options.clearance, options.tolerance);
+Answer near_answer(const PartPair& pair, const Part& a, const Part& b, const ClashOptions& options) {
+    const double reach = std::max(pair.clearance, options.tolerance);
     Answer answer;
     if (!(reach > 0)) return answer;
     const auto gap = distance(*a.shape, a.pose, *b.shape, b.pose, reach);
-    if (!gap || (gap->distance > options.tolerance && gap->distance > options.clearance)) return answer;
+    if (!gap || (gap->distance > options.tolerance && gap->distance > pair.clearance)) return answer;
     Clash clash = clash_of(pair);
     clash.distance = gap->distance;
     clash.point = clash.point_a = gap->point_a;
@@ -85,7 +85,7 @@ Answer answer_of(const PartPair& pair, const Part& a, const Part& b, std::span<c
     const double depth = *clash.depth, size = smaller_size(a, b);
     std::optional<Vec3> shared;
     if (sheets || depth <= noise * size) shared = common_point(*a.shape, a.pose, *b.shape, b.pose);
-    if (!shared && (sheets || contacts.empty())) return gap_between(pair, a, b, options);
+    if (!shared && (sheets || contacts.empty())) return near_answer(pair, a, b, options);
     Answer answer;
     answer.depth = depth;
     if (are_duplicates(a, b)) clash.kind = ClashKind::duplicate;
@@ -225,7 +225,7 @@ public:
     Bodies(Scene& scene, const std::vector<Part>& parts, std::span<const PartPair> pairs) : of_(parts.size()) {
         std::vector<char> used(parts.size(), 0);
         for (const PartPair& pair : pairs)
-            if (!pair.apart) used[pair.a] = used[pair.b] = 1;
+            if (!pair.apart()) used[pair.a] = used[pair.b] = 1;
         for (std::size_t i = 0; i < parts.size(); ++i)
             if (used[i] != 0) of_[i] = scene.add(parts[i].shape, parts[i].pose);
     }
@@ -252,7 +252,7 @@ std::vector<Answer> search(const std::vector<Part>& parts, std::span<const PartP
         const std::span some = pairs.subspan(first, std::min(at_once, pairs.size() - first));
         std::vector<Pair> list;
         for (const PartPair& pair : some)
-            if (!pair.apart) list.push_back(bodies.of(pair));
+            if (!pair.apart()) list.push_back(bodies.of(pair));
         scene.find_contacts(list);
         std::vector<Answer> answers(some.size());
         const auto each = [&](auto&& work) {
@@ -261,8 +261,8 @@ std::vector<Answer> search(const std::vector<Part>& parts, std::span<const PartP
             });
         };
         each([&](Answer& answer, const PartPair& pair, const Part& a, const Part& b) {
-            if (pair.apart) {
-                answer = gap_between(pair, a, b, options);
+            if (pair.apart()) {
+                answer = near_answer(pair, a, b, options);
                 return;
             }
             const auto [body_a, body_b] = bodies.of(pair);
@@ -294,8 +294,11 @@ ClashReport find_clashes(std::span<const AssemblyPart> given, const ClashOptions
     check_assembly(given, options);
     const Selection selection(given, options);
     std::vector<Part> parts = parts_of(given);
-    std::vector<PartPair> pairs = near_boxes(parts, std::max(options.clearance, options.tolerance));
-    std::erase_if(pairs, [&](const PartPair& pair) { return !selection.has(pair.a, pair.b); });
+    std::vector<PartPair> pairs = near_boxes(parts, std::max(selection.largest_clearance(), options.tolerance));
+    for (PartPair& pair : pairs) pair.clearance = selection.clearance(pair.a, pair.b);
+    std::erase_if(pairs, [&](const PartPair& pair) {
+        return !selection.has(pair.a, pair.b) || pair.gap > std::max(pair.clearance, options.tolerance);
+    });
     ClashReport report;
     report.pairs = pairs.size();
     // Shapes take most of the time.

@@ -99,8 +99,9 @@ TEST_F(Clash, DeepestFirstByFileName) {
         << "boxes of a and c do not touch; no progress bar where nobody sees it";
     const auto found = json_lines(result.out);
     ASSERT_EQ(found.size(), 2u);
-    EXPECT_EQ(keys_of(found[0]), (std::set<std::string>{"a", "b", "path_a", "path_b", "depth", "point", "contacts", "duplicate", "normal",
-                                                        "kind", "distance", "point_a", "point_b", "open", "box"}));
+    EXPECT_EQ(keys_of(found[0]),
+              (std::set<std::string>{"a", "b", "path_a", "path_b", "depth", "point", "contacts", "duplicate", "normal",
+                                     "kind", "distance", "point_a", "point_b", "open", "box"}));
     EXPECT_EQ(found[0]["a"], "b.obj");
     EXPECT_EQ(found[0]["b"], "c.obj");
     EXPECT_NEAR(found[0]["depth"].get<double>(), 0.3, 1e-5);
@@ -376,6 +377,28 @@ TEST_F(Clash, AgainstExcludeAndClearance) {
     EXPECT_EQ(run({"all.gltf", "--exclude", "everything.csv", "--clearance", "9", "--check"}).status, 0);
     EXPECT_EQ(run({"all.gltf", "--against", "post", "--clearance", "0.06", "--check"}).status, 3);
     EXPECT_EQ(pairs({"--clearance", "0.06", "--ignore-touching", "1"}), (Found{"wall-post near"}));
+    const auto near = [&](std::vector<std::string> options) {
+        Found found = pairs(std::move(options));
+        std::erase_if(found, [](const std::string& words) { return !words.ends_with(" near"); });
+        return found;
+    };
+    EXPECT_EQ(near({"--clearance", "0.06:wall"}), (Found{"wall-post near"}));
+    EXPECT_EQ(near({"--clearance", "0.06:pipe*"}), Found{});
+    EXPECT_EQ(near({"--clearance", "0.06:post:w*", "--clearance", "0.01"}), (Found{"wall-post near"}));
+    EXPECT_EQ(near({"--clearance", "0.06:post:pipe*", "--clearance", "0.01"}), Found{});
+    EXPECT_EQ(near({"--clearance", "60mm:wall", "--unit", "m"}), (Found{"wall-post near"}));
+    EXPECT_EQ(near({"--clearance", "40mm", "--unit", "m"}), Found{});
+    EXPECT_EQ(near({"--clearance", "1e-3in", "--clearance", "6cm", "--unit", "m"}), (Found{"wall-post near"}));
+    for (const auto& [word, why] : {std::pair{"60mm", "--unit"},
+                                    {"x:wall", "--clearance"},
+                                    {"0.06:", "pattern"},
+                                    {"0.06:wall:", "pattern"},
+                                    {"0.06ft", "--clearance"},
+                                    {"0.06:walls", "walls"},
+                                    {"1e10", "--clearance"},
+                                    {"", "--clearance"},
+                                    {"-1:wall", "--clearance"}})
+        expect_refused(run({"all.gltf", std::string("--clearance=") + word}), why);
     const ProgramResult text = run({"all.gltf", "--clearance", "60", "--unit", "mm"});
     EXPECT_NE(text.out.find(" mm apart  wall  x  post  at 2.3"), std::string::npos) << text.out;
     EXPECT_EQ(clashes({"all.gltf", "--unit", "in"})[0]["unit"], "in");

@@ -128,6 +128,38 @@ def test_pairs_are_chosen():
             pairs(**options)
 
 
+def test_some_pairs_have_another_clearance():
+    parts = row(0, 1.02, 2.04, 3.1)
+
+    def pairs(*clearances, clearance=0.0):
+        found = rc.clash(parts, clearance=clearance, clearances=clearances)
+        return {(one.index_a, one.index_b) for one in found}
+
+    assert pairs((0.03, "part 0")) == {(0, 1)} and pairs((0.03, "*")) == {(0, 1), (1, 2)} == pairs(clearance=0.03)
+    assert pairs((0.07, "part 3", "part 2"), (0.03, "part 1", "part 3")) == {(2, 3)}
+    assert pairs((0.01, "*"), clearance=0.03) == {(0, 1), (1, 2)}
+    near = rc.clash_along(parts, "part 3", rc.slide((0, 0, 1), [0, 1]), clearances=[(0.07, "part 2")])
+    assert [(one.other, one.meet) for one in near] == [("part 2", False)]
+    for bad in [(0.1,), ("part 0", 0.1), 0.1, (0.1, ""), (0.1, "no"), (-1, "*"), (0.1, "*", "*", "*")]:
+        with pytest.raises(rc.InputError):
+            pairs(bad)
+
+
+def test_clearances_from_the_shell(tmp_path, capsys):
+    hall = tree(tmp_path / "hall.gltf", {"pipe": 0, "wall": 1.02, "post": 2.04})
+
+    def near(*words):
+        status, out, err = in_shell(
+            capsys, hall, "--json", *[word for given in words for word in ("--clearance", given)]
+        )
+        return [(one["a"], one["b"]) for one in map(json.loads, out.splitlines())] if status == 0 else err
+
+    assert near("0.03:pipe") == [("pipe", "wall")] and near("0.03:post:wall", "0.01") == [("wall", "post")]
+    assert near("0.01", "0.03:pipe:post") == [] and len(near("0.01", "0.03")) == 2
+    for bad in ("x", "-1", "nan", "0.03:", "0.03:no"):
+        assert "clearance" in near(bad)
+
+
 def test_corners_that_differ_in_their_last_digits_are_welded():
     vertices, faces = meshes.box()
     loose = np.asarray(vertices)[np.asarray(faces)].reshape(-1, 3)

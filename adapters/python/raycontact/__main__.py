@@ -15,6 +15,8 @@ import numpy as np
 
 import raycontact as rc
 
+from .clash import ClearanceLike
+
 
 def _mesh(options: argparse.Namespace) -> int:
     good = True
@@ -77,13 +79,33 @@ def _excluded(given: str) -> list[str | tuple[str, str]]:
     return pairs
 
 
+def _clearances(given: list[str]) -> tuple[float, list[ClearanceLike]]:
+    """LENGTH is of all pairs, LENGTH:SET and LENGTH:SET:SET of some."""
+    plain = 0.0
+    some: list[ClearanceLike] = []
+    for word in given:
+        length, *names = word.split(":", 2)
+        try:
+            metres = float(length)
+        except ValueError:
+            metres = -1.0
+        if not metres >= 0:
+            raise rc.InputError(f"--clearance {word}: begins with no length; give LENGTH, LENGTH:SET or LENGTH:SET:SET")
+        if names:
+            some.append((metres, names[0], names[1] if len(names) > 1 else "*"))
+        else:
+            plain = max(plain, metres)
+    return plain, some
+
+
 def _clash(options: argparse.Namespace) -> int:
     exclude = [pair for given in options.exclude for pair in _excluded(given)]
+    clearance, clearances = _clearances(options.clearance)
     found = rc.clash(
         options.files, scale=options.scale, weld=options.weld, components=options.components,
         against=options.against, exclude=exclude,
-        clearance=options.clearance, tolerance=options.tolerance, ignore_touching=options.ignore_touching,
-        separations=options.separation, progress=sys.stderr.isatty(),
+        clearance=clearance, clearances=clearances, tolerance=options.tolerance,
+        ignore_touching=options.ignore_touching, separations=options.separation, progress=sys.stderr.isatty(),
     )  # fmt: skip
     for fault in found.faults:
         print(f"not checked: {fault.name}: {fault.why}", file=sys.stderr)
@@ -150,7 +172,8 @@ def main(arguments: list[str] | None = None) -> int:
     clash.add_argument("--exclude", action="append", default=[], metavar="PAIRS", help=words)
     clash.add_argument("--weld", type=float, metavar="LENGTH", help="join vertices nearer than this, after --scale")
     clash.add_argument("--components", action="store_true", help="split parts into their connected components")
-    clash.add_argument("--clearance", type=float, default=0.0, metavar="LENGTH", help="also find those so near")
+    words = "also find those so near; LENGTH:SET or LENGTH:SET:SET: of such names; may be given again"
+    clash.add_argument("--clearance", action="append", default=[], metavar="LENGTH", help=words)
     clash.add_argument("--tolerance", type=float, default=0.0, metavar="LENGTH", help="up to this they are touching")
     clash.add_argument("--separation", action="store_true", help="also find the translation that parts two (slow)")
     clash.add_argument("--ignore-touching", type=float, metavar="LENGTH", help="leave out clashes no deeper, metres")

@@ -16,6 +16,9 @@ from ._core import InputError
 from .mesh import Mesh, scaled_parts, split_parts, tell
 from .queries import Separation
 
+ClearanceLike = Union[tuple[float, str], tuple[float, str, str]]
+"""Metres, and the names or patterns of one part or both."""
+
 
 class Clash(NamedTuple):
     """Two parts that share a point, or are near.
@@ -213,6 +216,7 @@ def clash(
     against: Union[str, Sequence[str], None] = None,
     exclude: Iterable[Union[str, tuple[str, str]]] = (),
     clearance: float = 0.0,
+    clearances: Iterable[ClearanceLike] = (),
     tolerance: float = 0.0,
     ignore_touching: Optional[float] = None,
     volumes: bool = False,
@@ -234,6 +238,8 @@ def clash(
         "Floor 2/*" are all parts under nodes of that name: they are tested against all others, and no more.
     exclude: pairs of such names that are left out; and "parent-child", for nodes of a glTF file and those under them.
     clearance: parts that are no farther apart are found, too: kind "near", metres.
+    clearances: others for some pairs: (0.025, "pipe*") for those of which one part has such a name, (0.025, "pipe*",
+        "wall*") where the other has that. Of all that apply, and `clearance`, the largest counts.
     tolerance: gaps, and depths but of two open parts, up to it are "touching", metres.
     volumes: asks for the volume that two parts share (slow).
     separations: asks for the translation that parts them (slow: seconds for large parts).
@@ -244,7 +250,7 @@ def clash(
     that match nothing, for lengths below 0 and for a weld that `Mesh` refuses.
     """
     given = _given(assembly, scale, weld, components)
-    options = _options(exclude, clearance, threads)
+    options = _options(exclude, clearance, clearances, threads)
     options.against = [against] if isinstance(against, str) else list(against or ())
     options.tolerance = as_length(tolerance, "tolerance")
     options.volumes = bool(volumes)
@@ -275,6 +281,7 @@ def clash_along(
     components: bool = False,
     exclude: Iterable[Union[str, tuple[str, str]]] = (),
     clearance: float = 0.0,
+    clearances: Iterable[ClearanceLike] = (),
     threads: int = 0,
     progress: Union[bool, Callable[[float], Any]] = False,
 ) -> PathClashes:
@@ -286,7 +293,7 @@ def clash_along(
         frame of the assembly; from each to the next by a screw, the shortest turn. `turn` and `slide` make those of a
         hinge and of a drawer: `turn((0, 0, 1), np.linspace(0, 2, 3), hinge)`.
     at: (n,), what `PathClash.at` is at these times, as the angles of a turn; in between in proportion.
-    clearance: metres; parts that come no farther apart are found, too.
+    clearance, clearances: metres; parts that come no farther apart are found, too.
     assembly, scale, weld, components, exclude, threads, progress: as of `clash`, which raises the same; translations of
         moves are in the unit that scale makes.
 
@@ -311,7 +318,7 @@ def clash_along(
     with _Bar(progress) as bar:
         found, nearest, pairs, faults = _core.find_path_clashes(
             *given, [moving] if isinstance(moving, str) else list(moving), poses,
-            _options(exclude, clearance, threads), bar.tell,
+            _options(exclude, clearance, clearances, threads), bar.tell,
         )  # fmt: skip
     return PathClashes(
         [made(one) for one in found], names, pairs, _faults(names, faults), None if nearest is None else made(nearest)
@@ -337,12 +344,25 @@ def _given(assembly: Any, scale: float, weld: Optional[float], components: bool)
     return [part.name for part in parts], [part.mesh._core for part in parts], poses, files, parents, unders
 
 
-def _options(exclude: Iterable[Union[str, tuple[str, str]]], clearance: float, threads: int) -> _core.ClashOptions:
+def _options(
+    exclude: Iterable[Union[str, tuple[str, str]]], clearance: float, clearances: Iterable[ClearanceLike], threads: int
+) -> _core.ClashOptions:
     options = _core.ClashOptions()
     options.exclude, options.exclude_parent_child = _excluded(exclude)
     options.clearance = as_length(clearance, "clearance")
+    options.clearances = [_clearance_of(given) for given in clearances]
     options.threads = as_count(threads, "threads")
     return options
+
+
+def _clearance_of(given: Any) -> _core.ClearanceOf:
+    if (
+        isinstance(given, (tuple, list))
+        and len(given) in (2, 3)
+        and all(isinstance(name, str) and name for name in given[1:])
+    ):
+        return _core.ClearanceOf(as_length(given[0], "clearances"), (given[1], "*" if len(given) == 2 else given[2]))
+    raise InputError(f"clearances: {given!r} is no length with one or two names: (0.025, 'pipe*', 'wall*')")
 
 
 def _faults(names: list[str], faults: list[tuple[int, str]]) -> list[Fault]:

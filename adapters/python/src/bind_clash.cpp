@@ -202,12 +202,20 @@ void bind_clash(nb::module_& m) {
             return nb::make_tuple(tuples_of(parts), left_out);
         },
         "names"_a, "meshes"_a, "poses"_a, "files"_a, "parents"_a, "unders"_a);
+    nb::class_<ClearanceOf>(m, "ClearanceOf")
+        .def(
+            "__init__",
+            [](ClearanceOf* self, double clearance, const std::array<std::string, 2>& parts) {
+                new (self) ClearanceOf{clearance, parts};
+            },
+            "clearance"_a, "parts"_a);
     nb::class_<ClashOptions>(m, "ClashOptions")
         .def(nb::init<>())
         .def_rw("against", &ClashOptions::against)
         .def_rw("exclude", &ClashOptions::exclude)
         .def_rw("exclude_parent_child", &ClashOptions::exclude_parent_child)
         .def_rw("clearance", &ClashOptions::clearance)
+        .def_rw("clearances", &ClashOptions::clearances)
         .def_rw("tolerance", &ClashOptions::tolerance)
         .def_rw("volumes", &ClashOptions::volumes)
         .def_rw("separations", &ClashOptions::separations)

@@ -228,6 +228,43 @@ TEST(Clash, ToleranceWorksOnBothSides) {
     EXPECT_NEAR(found[3].distance, 0.02, 1e-12);
 }
 
+TEST(Clash, ClearancesOfSomePairs) {
+    std::vector<AssemblyPart> parts;
+    for (int i = 0; i < 3; ++i)
+        parts.push_back(box("pipe " + std::to_string(i), {1.02 * i, 0, 0}, {1.02 * i + 1, 1, 1}));
+    parts.push_back(box("wall", {-0.02 - 0.5, 0, 0}, {-0.02, 1, 1}));
+    parts.push_back(box("post", {0, 1.03, 1.04}, {1, 2, 2})); // 0.05 from pipe 0, whose box is nearer in each way
+    const auto near = [&](double plain, std::vector<ClearanceOf> some) {
+        ClashOptions options;
+        options.clearance = plain;
+        options.clearances = std::move(some);
+        std::set<std::pair<std::size_t, std::size_t>> found;
+        const ClashReport report = find_clashes(parts, options);
+        for (const Clash& c : report.clashes) {
+            EXPECT_EQ(c.kind, ClashKind::nearby);
+            found.emplace(c.a, c.b);
+        }
+        EXPECT_EQ(report.pairs, found.size()) << "boxes that lie along the axes are as far apart as what is in them";
+        return found;
+    };
+    using Pairs = std::set<std::pair<std::size_t, std::size_t>>;
+    EXPECT_EQ(near(0, {}), Pairs{});
+    EXPECT_EQ(near(0, {{0.03, {"wall", "*"}}}), (Pairs{{0, 3}}));
+    EXPECT_EQ(near(0, {{0.03, {"pipe*", "*"}}}), (Pairs{{0, 1}, {1, 2}, {0, 3}}));
+    EXPECT_EQ(near(0, {{0.03, {"pipe*", "pipe*"}}}), (Pairs{{0, 1}, {1, 2}}));
+    EXPECT_EQ(near(0, {{0.0501, {"post", "pipe 0"}}}), (Pairs{{0, 4}})) << "whichever comes first";
+    EXPECT_EQ(near(0, {{0.0499, {"pipe 0", "post"}}}), Pairs{});
+    EXPECT_EQ(near(0.03, {{0.01, {"pipe*", "*"}}}), (Pairs{{0, 1}, {1, 2}, {0, 3}})) << "the largest counts";
+    EXPECT_EQ(near(0.01, {{0.01, {"*", "*"}}, {0.0501, {"post", "*"}}, {0.02, {"post", "*"}}}), (Pairs{{0, 4}}));
+    EXPECT_EQ(near(0.01, {{0.03, {"pipe 0", "wall"}}, {0.03, {"pipe 2", "*"}}}), (Pairs{{0, 3}, {1, 2}}));
+    ClashOptions options;
+    for (const ClearanceOf& bad : {ClearanceOf{-1, {"*", "*"}}, ClearanceOf{std::nan(""), {"*", "*"}},
+                                   ClearanceOf{1, {"pipes", "*"}}, ClearanceOf{1, {"*", "pipe"}}}) {
+        options.clearances = {bad};
+        EXPECT_THROW(find_clashes(parts, options), InputError);
+    }
+}
+
 TEST(Clash, OpenPartsAreMarked) {
     AssemblyPart sheet{"sheet", nullptr, {}};
     sheet.mesh = std::make_shared<Mesh>(
@@ -400,6 +437,13 @@ TEST(ClashOnAPath, FindsWhatMovingPartsMeetAndHowNearTheyCome) {
         ASSERT_FALSE(within.clashes.empty());
         EXPECT_FALSE(within.clashes[0].meet);
         EXPECT_NEAR(within.clashes[0].place.distance, back.nearest->place.distance, 1e-3);
+        // A clearance of others does not count, one of these two does.
+        near.clearance = 0;
+        near.clearances = {{100, {"door", "handle"}}, {100, {"*wall", "door"}}};
+        const PathClashReport some = find_path_clashes(parts, {"door", "handle"}, turns(off, 0, -1.0), near);
+        ASSERT_EQ(some.clashes.size(), 2u);
+        for (const PathClash& clash : some.clashes) EXPECT_TRUE(parts[clash.other].name.ends_with("wall"));
+        EXPECT_EQ(parts[some.nearest->other].name, "post");
         // What is left out is not asked.
         ClashOptions without;
         without.exclude = {{"door", "wall"}};
