@@ -54,6 +54,7 @@ struct Options {
     bool components = false, volume = false, separation = false;
     std::uint32_t threads = 0;
     std::string out, csv, bcf, along, range;
+    std::string group; ///< part, assembly or a level; empty: none
     bool json = false, check = false, tree = false;
 
     bool moves() const { return !along.empty() || !range.empty(); }
@@ -70,8 +71,9 @@ bool ends_in_3mf(const std::string& file) {
 struct Result {
     std::vector<AssemblyPart> parts;
     ClashReport report;
-    ClashPath path;            ///< --along or --range
-    PathClashReport on_path{}; ///< likewise
+    ClashPath path;                   ///< --along or --range
+    PathClashReport on_path{};        ///< likewise
+    std::vector<ClashGroup> groups{}; ///< --group
     std::size_t ignored = 0;
 
     std::vector<std::string> open() const {
@@ -88,32 +90,51 @@ Json three(const Vec3& v) {
     return {v.x, v.y, v.z};
 }
 
-/// One line a clash.
+Json json_of(const Clash& c, const Result& result, const Options& options) {
+    Json line{{"a", result.parts[c.a].name},
+              {"b", result.parts[c.b].name},
+              {"path_a", path_of(result.parts[c.a])},
+              {"path_b", path_of(result.parts[c.b])},
+              {"depth", c.depth ? Json(*c.depth) : Json()},
+              {"point", three(c.point)},
+              {"contacts", c.contacts},
+              {"duplicate", c.kind == ClashKind::duplicate}};
+    line["normal"] = c.normal != Vec3{} ? three(c.normal) : Json();
+    line["kind"] = to_string(c.kind);
+    line["distance"] = c.distance;
+    line["point_a"] = three(c.point_a);
+    line["point_b"] = three(c.point_b);
+    line["open"] = Json::array();
+    if (c.open_a) line["open"].push_back("a");
+    if (c.open_b) line["open"].push_back("b");
+    line["box"] = c.box ? Json{three(c.box->low), three(c.box->high)} : Json();
+    if (options.separation) line["separation"] = c.separation ? separation_json(*c.separation) : Json();
+    if (options.volume) line["volume"] = c.volume ? Json(*c.volume) : Json();
+    if (!options.unit.empty()) line["unit"] = options.unit;
+    return line;
+}
+
+Json json_of(const ClashGroup& group, const Result& result, const Options& options) {
+    Json line{{"a", group.a},
+              {"b", group.b.empty() ? Json() : Json(group.b)},
+              {"count", group.clashes.size()},
+              {"box", {three(group.box.low), three(group.box.high)}},
+              {"clashes", Json::array()}};
+    for (const std::size_t i : group.clashes)
+        line["clashes"].push_back(json_of(result.report.clashes[i], result, options));
+    return line;
+}
+
+/// One line a clash, or a group.
 std::string json_lines(const Result& result, const Options& options) {
     std::string text;
-    for (const Clash& c : result.report.clashes) {
-        Json line{{"a", result.parts[c.a].name},
-                  {"b", result.parts[c.b].name},
-                  {"path_a", path_of(result.parts[c.a])},
-                  {"path_b", path_of(result.parts[c.b])},
-                  {"depth", c.depth ? Json(*c.depth) : Json()},
-                  {"point", three(c.point)},
-                  {"contacts", c.contacts},
-                  {"duplicate", c.kind == ClashKind::duplicate}};
-        line["normal"] = c.normal != Vec3{} ? three(c.normal) : Json();
-        line["kind"] = to_string(c.kind);
-        line["distance"] = c.distance;
-        line["point_a"] = three(c.point_a);
-        line["point_b"] = three(c.point_b);
-        line["open"] = Json::array();
-        if (c.open_a) line["open"].push_back("a");
-        if (c.open_b) line["open"].push_back("b");
-        line["box"] = c.box ? Json{three(c.box->low), three(c.box->high)} : Json();
-        if (options.separation) line["separation"] = c.separation ? separation_json(*c.separation) : Json();
-        if (options.volume) line["volume"] = c.volume ? Json(*c.volume) : Json();
-        if (!options.unit.empty()) line["unit"] = options.unit;
+    const auto add = [&](const Json& line) {
         text += line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
-    }
+    };
+    if (options.group.empty())
+        for (const Clash& c : result.report.clashes) add(json_of(c, result, options));
+    else
+        for (const ClashGroup& group : result.groups) add(json_of(group, result, options));
     return text;
 }
 
@@ -130,16 +151,34 @@ std::string note_of(const Clash& c, const char* unit) {
     return note.empty() ? note : "  (" + note + ")";
 }
 
+std::string depth_of(const Clash& c, const char* unit) {
+    return c.kind == ClashKind::nearby ? fmt::format("{} {} apart", c.distance, unit)
+           : !c.depth                  ? "no depth"
+           : *c.depth > 0              ? fmt::format("{} {}", float(*c.depth), unit)
+                                       : "touching";
+}
+
+std::string group_table(const Result& result, const char* unit) {
+    std::string text;
+    for (const ClashGroup& group : result.groups) {
+        const std::size_t count = group.clashes.size();
+        const std::string names = group.b.empty()      ? group.a + "  x  " + std::to_string(count) + " others"
+                                  : group.a == group.b ? "within " + group.a
+                                                       : group.a + "  x  " + group.b;
+        const AxisBox& box = group.box;
+        text +=
+            fmt::format("{:>12}  {}  {} clash{}, in {}, {}, {} to {}, {}, {}\n",
+                        depth_of(result.report.clashes[group.clashes[0]], unit), names, count, count == 1 ? "" : "es",
+                        box.low.x, box.low.y, box.low.z, box.high.x, box.high.y, box.high.z);
+    }
+    return text;
+}
+
 std::string table(const Result& result, const char* unit) {
     std::string text;
-    for (const Clash& c : result.report.clashes) {
-        const std::string depth = c.kind == ClashKind::nearby ? fmt::format("{} {} apart", c.distance, unit)
-                                  : !c.depth                  ? "no depth"
-                                  : *c.depth > 0              ? fmt::format("{} {}", float(*c.depth), unit)
-                                                              : "touching";
-        text += fmt::format("{:>12}  {}  x  {}  at {}, {}, {}{}\n", depth, path_of(result.parts[c.a]),
+    for (const Clash& c : result.report.clashes)
+        text += fmt::format("{:>12}  {}  x  {}  at {}, {}, {}{}\n", depth_of(c, unit), path_of(result.parts[c.a]),
                             path_of(result.parts[c.b]), c.point.x, c.point.y, c.point.z, note_of(c, unit));
-    }
     return text;
 }
 
@@ -157,6 +196,8 @@ std::string summary(const Result& result) {
     const std::size_t faults = result.report.faults.size();
     std::string text = fmt::format("{} clash{} among {} parts ({} pair{} of touching boxes)", clashes,
                                    clashes == 1 ? "" : "es", result.parts.size(), pairs, pairs == 1 ? "" : "s");
+    if (!result.groups.empty())
+        text += fmt::format(" in {} group{}", result.groups.size(), result.groups.size() == 1 ? "" : "s");
     if (result.ignored > 0) text += fmt::format(", {} ignored as touching", result.ignored);
     if (result.without_depth() > 0)
         text += fmt::format("; {} without a depth, as one of the parts is no sound solid (see raycontact mesh)",
@@ -270,6 +311,11 @@ Result search(const Options& options) {
             // Depths are float32: a tenth is a little more.
             return c.kind != ClashKind::nearby && c.depth && *c.depth <= *options.ignore_touching * (1 + 1e-6);
         });
+    if (!options.group.empty())
+        result.groups = options.group == "part"
+                            ? group_by_part(result.parts, result.report.clashes)
+                            : group_by_assembly(result.parts, result.report.clashes,
+                                                read_number<std::uint32_t>(options.group).value_or(0));
     return result;
 }
 
@@ -284,6 +330,7 @@ void run_path(const Options& options) {
                                       {options.ignore_touching.has_value(), "--ignore-touching"},
                                       {options.volume, "--volume"},
                                       {options.separation, "--separation"},
+                                      {!options.group.empty(), "--group"},
                                       {!options.out.empty(), "--out"},
                                       {!options.csv.empty(), "--csv"},
                                       {!options.bcf.empty(), "--bcf"}})
@@ -321,15 +368,17 @@ void run_clash(const Options& options) {
         std::cout << json_lines(result, options) << std::flush;
         std::cerr << summary(result);
     } else {
-        std::cout << table(result, unit.name) << summary(result) << std::flush;
+        std::cout << (options.group.empty() ? table(result, unit.name) : group_table(result, unit.name))
+                  << summary(result) << std::flush;
     }
     const std::vector<Clash>& clashes = result.report.clashes;
     if (out) write(out, clash::coloured_glb(result.parts, clashes));
-    if (csv) write(csv, clash::csv(result.parts, clashes, options.unit));
+    if (csv) write(csv, clash::csv(result.parts, clashes, options.unit, result.groups));
     if (bcf) {
         const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
         write(bcf, clash::bcf_zip(result.parts, clashes,
-                                  {unit.metres, unit.name, fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now))}));
+                                  {unit.metres, unit.name, fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now)),
+                                   result.groups}));
     }
     if (!options.check || stop_signal() != 0) return;
     if (!clashes.empty()) throw EndWith{found};
@@ -409,6 +458,17 @@ void add_clash(CLI::App& app) {
     add_out(*command, "--bcf", options->bcf,
             "write the clashes there as topics of BIM Collaboration Format 2.1; needs --unit")
         ->type_name("FILE.bcfzip");
+    command
+        ->add_option("--group", options->group,
+                     "print groups of clashes: part: those of one part; assembly: those of what is under one node "
+                     "with what is under another; a number: the same of nodes that many below the root")
+        ->type_name("part|assembly|N")
+        ->check([](const std::string& word) {
+            const auto level = read_number<std::uint32_t>(word);
+            return word == "part" || word == "assembly" || (level && *level > 0)
+                       ? std::string()
+                       : "\"" + word + "\" is no group; give part, assembly or a number from 1 on";
+        });
     command->add_flag("--tree", options->tree, "print the parts and the nodes that they are under, and search nothing");
     command->add_flag("--json", options->json, "print one JSON line a clash on stdout");
     command->add_flag("--check", options->check, "exit status 3 where parts clash");

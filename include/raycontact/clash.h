@@ -124,6 +124,26 @@ RAYCONTACT_API std::vector<AssemblyPart> split_components(const std::vector<Asse
 /// that matches all, and more than 1024 threads.
 RAYCONTACT_API ClashReport find_clashes(std::span<const AssemblyPart> parts, const ClashOptions& options = {});
 
+/// Clashes that are one matter for a person.
+struct ClashGroup {
+    std::string a;                    ///< path_of() the part that all have, or of what their parts are in
+    std::string b;                    ///< of the other, which may be the same; of several other parts empty
+    std::vector<std::size_t> clashes; ///< which of those given, rising; so the first is the deepest
+    AxisBox box;                      ///< about their boxes, or points where they have none
+};
+
+/// Each clash in the group of one of its parts: first all those of the part that has the most, then of the one that
+/// has the most of what is left, and so on; of equals the lowest part. So 40 bolts in one flange are one group. In the
+/// order of their first clashes. clashes: of find_clashes(), or some of them, in their order. Throws InputError for
+/// clashes of parts that are not there.
+RAYCONTACT_API std::vector<ClashGroup> group_by_part(std::span<const AssemblyPart> parts,
+                                                     std::span<const Clash> clashes);
+/// All clashes of what is in one assembly with what is in another, or in the same, are a group. level: 0: a part's
+/// assembly is the node that it is under; else that of the first `level` names of its path. A part that is under none,
+/// or has no more names, is one by itself. Order and errors as group_by_part().
+RAYCONTACT_API std::vector<ClashGroup> group_by_assembly(std::span<const AssemblyPart> parts,
+                                                         std::span<const Clash> clashes, std::size_t level = 0);
+
 /// Two parts of which the first moves.
 struct PathClash {
     std::size_t moving = 0; ///< number of a part

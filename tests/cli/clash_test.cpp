@@ -493,6 +493,41 @@ TEST_F(Clash, Table) {
     EXPECT_TRUE(without.ends_with(",0,,,,,,,,,,\r\n")) << without;
 }
 
+TEST_F(Clash, GroupsOfClashes) {
+    write_assembly("all.gltf", {{"flange", 0}, {"bolt", 0.9}, {"bolt", -0.8}, {"post", 1.75}, {"node", 0}, {"far", 9}});
+    std::ifstream file(folder_.path() / "all.gltf");
+    json root = json::parse(file);
+    root["nodes"][4].erase("mesh");
+    root["nodes"][4]["children"] = {1, 2};
+    root["scenes"][0]["nodes"] = {0, 3, 4, 5};
+    folder_.write("all.gltf", root.dump());
+    const auto groups = clashes({"all.gltf", "--group", "part", "--unit", "m"});
+    ASSERT_EQ(groups.size(), 2u);
+    EXPECT_EQ(keys_of(groups[0]), (std::set<std::string>{"a", "b", "count", "box", "clashes"}));
+    EXPECT_EQ(groups[0]["a"], "flange");
+    EXPECT_TRUE(groups[0]["b"].is_null());
+    EXPECT_EQ(groups[0]["count"], 2);
+    EXPECT_EQ(groups[0]["clashes"][0]["b"], "bolt #2") << "the deepest first";
+    EXPECT_NEAR(groups[0]["box"][0][0].get<double>(), -0.5, 1e-5);
+    EXPECT_NEAR(groups[0]["box"][1][0].get<double>(), 0.5, 1e-5);
+    EXPECT_EQ(groups[1]["a"], "node/bolt #1");
+    EXPECT_EQ(groups[1]["b"], "post");
+    EXPECT_EQ(groups[1]["clashes"][0], clashes({"all.gltf", "--unit", "m"})[1]);
+
+    const ProgramResult text = run({"all.gltf", "--group", "assembly", "--csv", "groups.csv"});
+    EXPECT_NE(text.out.find("  flange  x  node  2 clashes, in -0.5"), std::string::npos) << text.out;
+    EXPECT_NE(text.out.find("  node  x  post  1 clash, in 1.2"), std::string::npos) << text.out;
+    EXPECT_TRUE(text.out.ends_with("3 clashes among 5 parts (3 pairs of touching boxes) in 2 groups\n")) << text.out;
+    std::ifstream table(folder_.path() / "groups.csv", std::ios::binary);
+    const std::string lines{std::istreambuf_iterator<char>(table), {}};
+    EXPECT_NE(lines.find(",unit,group\r\n"), std::string::npos) << lines;
+    EXPECT_TRUE(lines.ends_with(",,1\r\n") || lines.ends_with(",,2\r\n")) << lines;
+    EXPECT_EQ(clashes({"all.gltf", "--group", "part", "--ignore-touching", "0.12"})[0]["count"], 1);
+    EXPECT_EQ(clashes({"all.gltf", "--group", "1"})[0]["b"], "node");
+    for (const char* bad : {"0", "parts", "-1", ""})
+        expect_refused(run({"all.gltf", std::string("--group=") + bad}), "--group");
+}
+
 TEST_F(Clash, SameForEveryNumberOfThreads) {
     std::vector<std::string> arguments;
     for (int i = 0; i < 40; ++i) {

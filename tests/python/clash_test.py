@@ -160,6 +160,25 @@ def test_clearances_from_the_shell(tmp_path, capsys):
         assert "clearance" in near(bad)
 
 
+def test_clashes_are_grouped(tmp_path):
+    bolts = {f"hall/joint/bolt {i}": 0.8 + 0.01 * i for i in range(3)}
+    hall = tree(tmp_path / "hall.gltf", {"hall/flange": 0, **bolts, "post": -0.9})
+    found = rc.clash(hall, exclude=[("bolt*", "bolt*")])
+    (flange,) = found.groups()
+    assert (flange.a, flange.b, len(flange.clashes)) == ("hall/flange", None, 4) and flange.clashes == list(found)
+    assert np.allclose(flange.box[:, 0], [-0.5, 0.5], atol=1e-4)
+    groups = {(group.a, group.b): len(group.clashes) for group in found.groups("assembly")}
+    assert groups == {("hall", "hall/joint"): 3, ("hall", "post"): 1}
+    assert {(group.a, group.b) for group in found.groups(1)} == {("hall", "hall"), ("hall", "post")}
+    (pair,) = rc.clash(row(0, 0.5)).groups()
+    assert (pair.a, pair.b) == ("part 0", "part 1") and not rc.clash(row(0, 5)).groups("assembly")
+    near = rc.clash(row(0, 1.5), clearance=1).groups()[0]
+    assert np.allclose(near.box[:, 0], [0.5, 1])
+    for bad in ("parts", 0, -1, None):
+        with pytest.raises(rc.InputError):
+            found.groups(bad)
+
+
 def test_corners_that_differ_in_their_last_digits_are_welded():
     vertices, faces = meshes.box()
     loose = np.asarray(vertices)[np.asarray(faces)].reshape(-1, 3)

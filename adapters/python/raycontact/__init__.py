@@ -13,7 +13,7 @@ InputError, a ValueError.
 
 from . import _core
 from ._core import DeviceInfo, InputError, MeshReport, StepStats, list_devices
-from .clash import Clash, Clashes, PathClash, PathClashes, clash, clash_along
+from .clash import Clash, Clashes, ClashGroup, PathClash, PathClashes, clash, clash_along
 from .collision import CollisionManager
 from .contacts import CONTACT_DTYPE, Contacts, FeatureKind, PairContacts
 from .grasps import wrench_cone
@@ -62,7 +62,7 @@ __version__: str = _core.version
 
 __all__ = [
     "CONTACT_DTYPE", "AssemblyPart", "BodyClosestPoints", "BodyImpact", "BodyOverlaps", "BodyRayHits", "Clash",
-    "Clashes", "ClosestPoint", "CollisionManager", "ContactPatches", "Contacts", "DeviceInfo", "Distance",
+    "ClashGroup", "Clashes", "ClosestPoint", "CollisionManager", "ContactPatches", "Contacts", "DeviceInfo", "Distance",
     "FeatureKind", "Impact", "InputError", "LostContacts", "Mass", "Mesh", "MeshReport", "OneBodyClosestPoint",
     "OneBodyRayHit", "OneClosestPoint", "OneDistance", "OneRayHit", "OneSignedDistance", "PairContacts",
     "PathClash", "PathClashes", "PathClearance", "RayHit", "RecordedStep", "Recorder", "Recording", "Scene",

@@ -107,6 +107,21 @@ class _Found(Sequence[_One]):
         return [f"not checked: {_some([fault.name for fault in self.faults])}"] if self.faults else []
 
 
+class ClashGroup(NamedTuple):
+    """Clashes that are one matter for a person.
+
+    a: path of the part that all have, or of what their parts are in.
+    b: of the other, which may be the same; None: of several other parts.
+    clashes: in their order, the deepest first.
+    box: (2, 3) float64, metres: lowest and highest corner of their boxes, and of points where they have none.
+    """
+
+    a: str
+    b: Optional[str]
+    clashes: list[Clash]
+    box: NDArray[np.float64]
+
+
 class Clashes(_Found[Clash]):
     """Clashes, the deepest first, then those without a depth, that touch, that are near."""
 
@@ -118,6 +133,7 @@ class Clashes(_Found[Clash]):
         faults: list[Fault],
         open: list[str],
         paths: list[str],
+        tree: tuple[list[str], list[list[str]]],
     ):
         super().__init__(clashes, parts, pairs, faults)
         self.paths = paths
@@ -125,6 +141,25 @@ class Clashes(_Found[Clash]):
         between: "Building/Floor 2/Pipe 7"."""
         self.open = open
         """Parts without an inside."""
+        self._tree = tree
+
+    def groups(self, by: Union[str, int] = "part") -> list[ClashGroup]:
+        """Clashes that are one matter, in the order of their deepest ones.
+
+        by: "part": each clash is in the group of one of its parts: first all those of the part that has the most, then
+            of the one that has the most of what is left; so 40 bolts in one flange are one group. "assembly": those of
+            what is under one node with what is under another, or the same; a number n from 1: of nodes that the first n
+            names of a path are. Raises InputError for anything else.
+        """
+        levels = {"part": -1, "assembly": 0}
+        level = levels.get(by) if isinstance(by, str) else as_count(by, "by")
+        if level is None or (level == 0 and by != "assembly"):
+            raise InputError(f"by: {by!r} is not 'part', 'assembly' or a number from 1 on")
+        pairs = [(one.index_a, one.index_b) for one in self]
+        corners = [(one.point_a, one.point_b) if one.box is None else one.box for one in self]
+        boxes = [np.concatenate((np.min(pair, axis=0), np.max(pair, axis=0))).tolist() for pair in corners]
+        found = _core.group_clashes(self.parts, *self._tree, pairs, boxes, level)
+        return [ClashGroup(a, b or None, [self[i] for i in numbers], box) for a, b, numbers, box in found]
 
     def __repr__(self) -> str:
         depths = [clash.depth for clash in self if clash.depth and clash.depth > 0]
@@ -267,7 +302,9 @@ def clash(
     if ignore_touching is not None:
         most = as_length(ignore_touching, "ignore_touching") * (1 + 1e-6)  # depths are float32
         clashes = [one for one in clashes if one.kind == "near" or one.depth is None or one.depth > most]
-    return Clashes(clashes, names, pairs, _faults(names, faults), [names[i] for i in opened], paths)
+    return Clashes(
+        clashes, names, pairs, _faults(names, faults), [names[i] for i in opened], paths, (given[3], given[5])
+    )
 
 
 def clash_along(
@@ -435,4 +472,4 @@ class _Bar:
             self._bar.close()
 
 
-__all__ = ["Clash", "Clashes", "Fault", "PathClash", "PathClashes", "clash", "clash_along"]
+__all__ = ["Clash", "ClashGroup", "Clashes", "Fault", "PathClash", "PathClashes", "clash", "clash_along"]

@@ -74,11 +74,12 @@ Array three(const Vec3& v) {
     return array_of(std::vector<double>{v.x, v.y, v.z}, {3});
 }
 
+Array corners_of(const AxisBox& b) {
+    return array_of(std::vector<double>{b.low.x, b.low.y, b.low.z, b.high.x, b.high.y, b.high.z}, {2, 3});
+}
+
 /// In the order of the fields of Python's Clash, without the names.
 nb::tuple tuple_of(const Clash& found) {
-    const auto box = [](const AxisBox& b) {
-        return array_of(std::vector<double>{b.low.x, b.low.y, b.low.z, b.high.x, b.high.y, b.high.z}, {2, 3});
-    };
     const auto parted = [](const Separation& s) {
         return nb::make_tuple(s.distance, three(s.normal), three(s.point_a), three(s.point_b));
     };
@@ -86,7 +87,7 @@ nb::tuple tuple_of(const Clash& found) {
                           found.normal != Vec3{} ? nb::cast(three(found.normal)) : nb::none(), found.contacts,
                           found.kind == ClashKind::duplicate, found.a, found.b, to_string(found.kind), found.distance,
                           three(found.point_a), three(found.point_b), nb::make_tuple(found.open_a, found.open_b),
-                          found.box ? nb::cast(box(*found.box)) : nb::none(), found.volume,
+                          found.box ? nb::cast(corners_of(*found.box)) : nb::none(), found.volume,
                           found.separation ? nb::object(parted(*found.separation)) : nb::none());
 }
 
@@ -150,6 +151,31 @@ nb::tuple find_clashes_of(const std::vector<std::string>& names, const std::vect
     nb::list paths;
     for (const AssemblyPart& part : parts) paths.append(path_of(part));
     return nb::make_tuple(found, report.pairs, faults_of(report), nb::cast(report.open), paths);
+}
+
+/// boxes: of each clash low and high, or its point twice. level: below 0: groups of parts.
+nb::list groups_of(const std::vector<std::string>& names, const std::vector<std::string>& files, const Unders& unders,
+                   const std::vector<std::array<std::size_t, 2>>& pairs,
+                   const std::vector<std::array<double, 6>>& boxes, int level) {
+    if (boxes.size() != pairs.size()) throw nb::value_error("clash: as many pairs and boxes are needed");
+    std::vector<AssemblyPart> parts(names.size());
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        parts[i].name = names[i];
+        if (!files.empty()) parts[i].file = files.at(i);
+        if (!unders.empty()) parts[i].under = unders.at(i);
+    }
+    std::vector<Clash> clashes(pairs.size());
+    for (std::size_t i = 0; i < clashes.size(); ++i) {
+        const auto& b = boxes[i];
+        clashes[i].a = pairs[i][0];
+        clashes[i].b = pairs[i][1];
+        clashes[i].box = AxisBox{{b[0], b[1], b[2]}, {b[3], b[4], b[5]}};
+    }
+    nb::list found;
+    for (const ClashGroup& group :
+         level < 0 ? group_by_part(parts, clashes) : group_by_assembly(parts, clashes, std::size_t(level)))
+        found.append(nb::make_tuple(group.a, group.b, group.clashes, corners_of(group.box)));
+    return found;
 }
 
 /// In the order of the fields of Python's PathClash, without the names.
@@ -222,6 +248,7 @@ void bind_clash(nb::module_& m) {
         .def_rw("threads", &ClashOptions::threads);
     m.def("find_clashes", &find_clashes_of, "names"_a, "meshes"_a, "poses"_a, "files"_a, "parents"_a, "unders"_a,
           "options"_a, "progress"_a.none());
+    m.def("group_clashes", &groups_of, "names"_a, "files"_a, "unders"_a, "pairs"_a, "boxes"_a, "level"_a);
     m.def("find_path_clashes", &find_path_clashes_of, "names"_a, "meshes"_a, "poses"_a, "files"_a, "parents"_a,
           "unders"_a, "moving"_a, "moves"_a, "options"_a, "progress"_a.none());
 }

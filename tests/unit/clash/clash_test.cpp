@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Boxes, and solids of cubes, whose answers are known by hand; at the origin and at UTM coordinates.
+#include "mesh/vector.h"
+
 #include <raycontact/clash.h>
 
 #include <gtest/gtest.h>
@@ -378,6 +380,62 @@ TEST(Clash, PairsAreChosen) {
           ClashOptions{.tolerance = std::nan("")}, ClashOptions{.threads = 5000}})
         EXPECT_THROW(find_clashes(parts, options), InputError);
     EXPECT_THROW(find_clashes(std::span(parts).first(1)), InputError);
+}
+
+TEST(Clash, GroupsAreOfOnePartOrOfTwoAssemblies) {
+    // A flange with four bolts, two of which meet a pipe, which meets a wall.
+    std::vector<AssemblyPart> parts{box("pipe", {0, 0, 0}, {1, 1, 1}), box("flange", {4, 0, 0}, {8, 1, 1}),
+                                    box("wall", {-1, 0, 0}, {0.2, 1, 1})};
+    for (int i = 0; i < 4; ++i)
+        parts.push_back(
+            box("bolt " + std::to_string(i), {i < 2 ? 0.9 : 3 + i, 0.2 * i, 0.2}, {4.01 + i, 0.2 * i + 0.1, 2}));
+    for (std::size_t i = 3; i < 7; ++i) parts[i].under = {"hall", "joint", "bolts"};
+    parts[1].under = {"hall", "joint"};
+    parts[0].under = {"hall"};
+    const std::vector<Clash> clashes = clashes_of(parts);
+    ASSERT_EQ(clashes.size(), 7u);
+    const auto members = [&](const ClashGroup& group) {
+        std::set<std::set<std::string>> found;
+        for (const std::size_t i : group.clashes) {
+            found.insert({parts[clashes[i].a].name, parts[clashes[i].b].name});
+            const AxisBox box = clashes[i].box.value();
+            EXPECT_EQ(least(group.box.low, box.low), group.box.low);
+            EXPECT_EQ(most(group.box.high, box.high), group.box.high);
+        }
+        EXPECT_TRUE(std::ranges::is_sorted(group.clashes));
+        return found;
+    };
+    const auto named = [&](const std::vector<ClashGroup>& groups) {
+        std::map<std::pair<std::string, std::string>, std::size_t> found;
+        std::size_t all = 0;
+        for (std::size_t i = 0; i < groups.size(); ++i) {
+            found[{groups[i].a, groups[i].b}] = members(groups[i]).size();
+            all += groups[i].clashes.size();
+            if (i > 0) {
+                EXPECT_LT(groups[i - 1].clashes[0], groups[i].clashes[0]);
+            }
+        }
+        EXPECT_EQ(all, clashes.size()) << "each once";
+        return found;
+    };
+    using Groups = std::map<std::pair<std::string, std::string>, std::size_t>;
+    EXPECT_EQ(named(group_by_part(parts, clashes)), (Groups{{{"hall/joint/flange", ""}, 4}, {{"hall/pipe", ""}, 3}}));
+    EXPECT_EQ(
+        named(group_by_assembly(parts, clashes)),
+        (Groups{{{"hall/joint", "hall/joint/bolts"}, 4}, {{"hall", "hall/joint/bolts"}, 2}, {{"hall", "wall"}, 1}}));
+    EXPECT_EQ(named(group_by_assembly(parts, clashes, 1)), (Groups{{{"hall", "hall"}, 6}, {{"hall", "wall"}, 1}}));
+    EXPECT_EQ(
+        named(group_by_assembly(parts, clashes, 2)),
+        (Groups{{{"hall/joint", "hall/joint"}, 4}, {{"hall/joint", "hall/pipe"}, 2}, {{"hall/pipe", "wall"}, 1}}));
+    // Of some of them; the last one of two parts names both.
+    const std::vector<Clash> one{clashes[0]};
+    const auto alone = group_by_part(parts, one);
+    ASSERT_EQ(alone.size(), 1u);
+    EXPECT_EQ(alone[0].a, path_of(parts[one[0].a]));
+    EXPECT_EQ(alone[0].b, path_of(parts[one[0].b]));
+    EXPECT_TRUE(group_by_part(parts, {}).empty());
+    EXPECT_THROW(group_by_part(std::span(parts).first(2), clashes), InputError);
+    EXPECT_THROW(group_by_assembly(std::span(parts).first(2), clashes), InputError);
 }
 
 TEST(Clash, ProgressIsToldAndASearchCanBeStopped) {
