@@ -70,7 +70,7 @@ std::string length_text(double length, const BcfOptions& options) {
 }
 
 std::string markup(const std::string& guid, const std::string& view, std::size_t index, const std::string& title,
-                   const Clash& c, const BcfOptions& options) {
+                   const std::string& label, const Clash& c, const BcfOptions& options) {
     std::string description = to_string(c.kind);
     if (c.kind == ClashKind::nearby)
         description += ", apart by " + length_text(c.distance, options);
@@ -81,10 +81,12 @@ std::string markup(const std::string& guid, const std::string& view, std::size_t
     if (c.volume) description += fmt::format(", volume {:.6g} {}^3", *c.volume, options.unit);
     return fmt::format(
         "{}<Markup><Topic Guid=\"{}\" TopicType=\"Clash\" TopicStatus=\"Open\"><Title>{}</Title><Index>{}</Index>"
-        "<Labels>{}</Labels><CreationDate>{}</CreationDate><CreationAuthor>raycontact</CreationAuthor>"
+        "<Labels>{}</Labels>{}<CreationDate>{}</CreationDate><CreationAuthor>raycontact</CreationAuthor>"
         "<Description>{}</Description></Topic><Viewpoints Guid=\"{}\"><Viewpoint>viewpoint.bcfv</Viewpoint>"
         "</Viewpoints></Markup>\n",
-        declaration, guid, escaped(title), index, to_string(c.kind), options.date, escaped(description), view);
+        declaration, guid, escaped(title), index, to_string(c.kind),
+        label.empty() ? std::string() : "<Labels>" + escaped(label) + "</Labels>", options.date, escaped(description),
+        view);
 }
 
 // From the south-west and above, as far as some sizes of what clashes; z is up in BCF.
@@ -184,11 +186,14 @@ std::string bcf_zip(const std::vector<AssemblyPart>& parts, const std::vector<Cl
     std::vector<std::pair<std::string, std::string>> files{
         {"bcf.version",
          std::string(declaration) + "<Version VersionId=\"2.1\"><DetailedVersion>2.1</DetailedVersion></Version>\n"}};
+    std::vector<std::string> labels(clashes.size());
+    for (const ClashGroup& group : options.groups)
+        for (const std::size_t i : group.clashes) labels[i] = group.b.empty() ? group.a : group.a + " x " + group.b;
     for (std::size_t i = 0; i < clashes.size(); ++i) {
         const Clash& c = clashes[i];
         const std::string title = parts[c.a].name + " x " + parts[c.b].name;
         const std::string guid = uuid(parts[c.a].name + '\n' + parts[c.b].name), view = uuid(guid);
-        files.emplace_back(guid + "/markup.bcf", markup(guid, view, i, title, c, options));
+        files.emplace_back(guid + "/markup.bcf", markup(guid, view, i, title, labels[i], c, options));
         files.emplace_back(guid + "/viewpoint.bcfv", viewpoint(view, c, seen_size(c, sizes), options));
     }
     Zip zip;

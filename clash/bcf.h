@@ -10,9 +10,10 @@ namespace raycontact::clash {
 
 /// How clashes are told to people.
 struct BcfOptions {
-    double metres = 1;      ///< that the unit of the parts is long; BCF has metres
-    std::string unit = "m"; ///< its name, for descriptions
-    std::string date;       ///< of creation, "2026-01-31T12:00:00Z"
+    double metres = 1;                ///< that the unit of the parts is long; BCF has metres
+    std::string unit = "m";           ///< its name, for descriptions
+    std::string date;                 ///< of creation, "2026-01-31T12:00:00Z"
+    std::vector<ClashGroup> groups{}; ///< of the same clashes: each topic has the names of its group as a label
 };
 
 /// A zip file of BIM Collaboration Format 2.1: of each clash a topic, with a viewpoint whose camera looks at its point.

@@ -1,11 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/commands.h"
 
+#include "cli/clash_clearance.h"
 #include "cli/clash_path.h"
+#include "cli/clash_tree.h"
+#include "cli/length_unit.h"
 #include "cli/number_option.h"
 #include "cli/out_option.h"
 #include "cli/program.h"
 #include "cli/progress.h"
+#include "cli/separation.h"
 #include "cli/stop.h"
 #include "cli/weld_option.h"
 
@@ -41,31 +45,21 @@ namespace {
 using namespace raycontact;
 using Json = nlohmann::ordered_json;
 
-struct Unit {
-    const char* name;
-    double metres;
-};
-constexpr std::array units{Unit{"m", 1}, Unit{"mm", 1e-3}, Unit{"cm", 1e-2}, Unit{"in", 0.0254}};
-
 /// Lengths are in the unit of the files.
 struct Options {
-    std::vector<std::string> files, against, exclude;
-    double clearance = 0, tolerance = 0;
+    std::vector<std::string> files, against, exclude, clearance;
+    double tolerance = 0;
     std::optional<double> ignore_touching, weld;
     std::string unit; ///< empty: not told
-    bool components = false, volume = false;
+    bool components = false, volume = false, separation = false;
     std::uint32_t threads = 0;
     std::string out, csv, bcf, along, range;
-    bool json = false;
-    bool check = false;
+    std::string group; ///< part, assembly or a level; empty: none
+    bool json = false, check = false, tree = false;
 
     bool moves() const { return !along.empty() || !range.empty(); }
 
-    const Unit& length_unit() const {
-        for (const Unit& known : units)
-            if (unit == known.name) return known;
-        return units[0];
-    }
+    LengthUnit length_unit() const { return unit.empty() ? length_units[0] : *raycontact::length_unit(unit); }
 };
 
 bool ends_in_3mf(const std::string& file) {
@@ -77,8 +71,9 @@ bool ends_in_3mf(const std::string& file) {
 struct Result {
     std::vector<AssemblyPart> parts;
     ClashReport report;
-    ClashPath path;            ///< --along or --range
-    PathClashReport on_path{}; ///< likewise
+    ClashPath path;                   ///< --along or --range
+    PathClashReport on_path{};        ///< likewise
+    std::vector<ClashGroup> groups{}; ///< --group
     std::size_t ignored = 0;
 
     std::vector<std::string> open() const {
@@ -95,33 +90,55 @@ Json three(const Vec3& v) {
     return {v.x, v.y, v.z};
 }
 
-/// One line a clash.
+Json json_of(const Clash& c, const Result& result, const Options& options) {
+    Json line{{"a", result.parts[c.a].name},
+              {"b", result.parts[c.b].name},
+              {"path_a", path_of(result.parts[c.a])},
+              {"path_b", path_of(result.parts[c.b])},
+              {"depth", c.depth ? Json(*c.depth) : Json()},
+              {"point", three(c.point)},
+              {"contacts", c.contacts},
+              {"duplicate", c.kind == ClashKind::duplicate}};
+    line["normal"] = c.normal != Vec3{} ? three(c.normal) : Json();
+    line["kind"] = to_string(c.kind);
+    line["distance"] = c.distance;
+    line["point_a"] = three(c.point_a);
+    line["point_b"] = three(c.point_b);
+    line["open"] = Json::array();
+    if (c.open_a) line["open"].push_back("a");
+    if (c.open_b) line["open"].push_back("b");
+    line["box"] = c.box ? Json{three(c.box->low), three(c.box->high)} : Json();
+    if (options.separation) line["separation"] = c.separation ? separation_json(*c.separation) : Json();
+    if (options.volume) line["volume"] = c.volume ? Json(*c.volume) : Json();
+    if (!options.unit.empty()) line["unit"] = options.unit;
+    return line;
+}
+
+Json json_of(const ClashGroup& group, const Result& result, const Options& options) {
+    Json line{{"a", group.a},
+              {"b", group.b.empty() ? Json() : Json(group.b)},
+              {"count", group.clashes.size()},
+              {"box", {three(group.box.low), three(group.box.high)}},
+              {"clashes", Json::array()}};
+    for (const std::size_t i : group.clashes)
+        line["clashes"].push_back(json_of(result.report.clashes[i], result, options));
+    return line;
+}
+
+/// One line a clash, or a group.
 std::string json_lines(const Result& result, const Options& options) {
     std::string text;
-    for (const Clash& c : result.report.clashes) {
-        Json line{{"a", result.parts[c.a].name},
-                  {"b", result.parts[c.b].name},
-                  {"depth", c.depth ? Json(*c.depth) : Json()},
-                  {"point", three(c.point)},
-                  {"contacts", c.contacts},
-                  {"duplicate", c.kind == ClashKind::duplicate}};
-        line["normal"] = c.normal != Vec3{} ? three(c.normal) : Json();
-        line["kind"] = to_string(c.kind);
-        line["distance"] = c.distance;
-        line["point_a"] = three(c.point_a);
-        line["point_b"] = three(c.point_b);
-        line["open"] = Json::array();
-        if (c.open_a) line["open"].push_back("a");
-        if (c.open_b) line["open"].push_back("b");
-        line["box"] = c.box ? Json{three(c.box->low), three(c.box->high)} : Json();
-        if (options.volume) line["volume"] = c.volume ? Json(*c.volume) : Json();
-        if (!options.unit.empty()) line["unit"] = options.unit;
+    const auto add = [&](const Json& line) {
         text += line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
-    }
+    };
+    if (options.group.empty())
+        for (const Clash& c : result.report.clashes) add(json_of(c, result, options));
+    else
+        for (const ClashGroup& group : result.groups) add(json_of(group, result, options));
     return text;
 }
 
-std::string note_of(const Clash& c) {
+std::string note_of(const Clash& c, const char* unit) {
     std::string note = c.kind == ClashKind::duplicate  ? "the same part in the same place"
                        : c.kind == ClashKind::inside   ? "one inside the other"
                        : c.kind == ClashKind::piercing ? "one through the other"
@@ -130,19 +147,38 @@ std::string note_of(const Clash& c) {
         note += note.empty() ? "" : ", ";
         note += c.open_a && c.open_b ? "both are open" : c.open_a ? "the first is open" : "the second is open";
     }
+    if (c.separation) note += (note.empty() ? "" : ", ") + separation_words(*c.separation, unit);
     return note.empty() ? note : "  (" + note + ")";
+}
+
+std::string depth_of(const Clash& c, const char* unit) {
+    return c.kind == ClashKind::nearby ? fmt::format("{} {} apart", c.distance, unit)
+           : !c.depth                  ? "no depth"
+           : *c.depth > 0              ? fmt::format("{} {}", float(*c.depth), unit)
+                                       : "touching";
+}
+
+std::string group_table(const Result& result, const char* unit) {
+    std::string text;
+    for (const ClashGroup& group : result.groups) {
+        const std::size_t count = group.clashes.size();
+        const std::string names = group.b.empty()      ? group.a + "  x  " + std::to_string(count) + " others"
+                                  : group.a == group.b ? "within " + group.a
+                                                       : group.a + "  x  " + group.b;
+        const AxisBox& box = group.box;
+        text +=
+            fmt::format("{:>12}  {}  {} clash{}, in {}, {}, {} to {}, {}, {}\n",
+                        depth_of(result.report.clashes[group.clashes[0]], unit), names, count, count == 1 ? "" : "es",
+                        box.low.x, box.low.y, box.low.z, box.high.x, box.high.y, box.high.z);
+    }
+    return text;
 }
 
 std::string table(const Result& result, const char* unit) {
     std::string text;
-    for (const Clash& c : result.report.clashes) {
-        const std::string depth = c.kind == ClashKind::nearby ? fmt::format("{} {} apart", c.distance, unit)
-                                  : !c.depth                  ? "no depth"
-                                  : *c.depth > 0              ? fmt::format("{} {}", float(*c.depth), unit)
-                                                              : "touching";
-        text += fmt::format("{:>12}  {}  x  {}  at {}, {}, {}{}\n", depth, result.parts[c.a].name,
-                            result.parts[c.b].name, c.point.x, c.point.y, c.point.z, note_of(c));
-    }
+    for (const Clash& c : result.report.clashes)
+        text += fmt::format("{:>12}  {}  x  {}  at {}, {}, {}{}\n", depth_of(c, unit), path_of(result.parts[c.a]),
+                            path_of(result.parts[c.b]), c.point.x, c.point.y, c.point.z, note_of(c, unit));
     return text;
 }
 
@@ -160,6 +196,8 @@ std::string summary(const Result& result) {
     const std::size_t faults = result.report.faults.size();
     std::string text = fmt::format("{} clash{} among {} parts ({} pair{} of touching boxes)", clashes,
                                    clashes == 1 ? "" : "es", result.parts.size(), pairs, pairs == 1 ? "" : "s");
+    if (!result.groups.empty())
+        text += fmt::format(" in {} group{}", result.groups.size(), result.groups.size() == 1 ? "" : "s");
     if (result.ignored > 0) text += fmt::format(", {} ignored as touching", result.ignored);
     if (result.without_depth() > 0)
         text += fmt::format("; {} without a depth, as one of the parts is no sound solid (see raycontact mesh)",
@@ -224,6 +262,15 @@ void prepare_parts(std::vector<AssemblyPart>& parts, const Options& options) {
     }
 }
 
+std::vector<AssemblyPart> load(const Options& options) {
+    std::vector<std::string> left_out;
+    std::vector<AssemblyPart> parts = load_parts({options.files.begin(), options.files.end()}, &left_out);
+    if (options.weld || options.length_unit().metres != 1) prepare_parts(parts, options);
+    if (options.components) parts = split_components(parts, &left_out);
+    for (const std::string& line : left_out) std::cerr << line << '\n';
+    return parts;
+}
+
 Result search(const Options& options) {
     ClashOptions how;
     how.against = options.against;
@@ -233,16 +280,13 @@ Result search(const Options& options) {
         else
             read_excluded(excluded, how);
     }
-    how.clearance = options.clearance;
+    set_clearances(options.clearance, options.unit, how);
     how.tolerance = options.tolerance;
     how.volumes = options.volume;
+    how.separations = options.separation;
     how.threads = options.threads;
     Result result;
-    std::vector<std::string> left_out;
-    result.parts = load_parts({options.files.begin(), options.files.end()}, &left_out);
-    if (options.weld || options.length_unit().metres != 1) prepare_parts(result.parts, options);
-    if (options.components) result.parts = split_components(result.parts, &left_out);
-    for (const std::string& line : left_out) std::cerr << line << '\n';
+    result.parts = load(options);
     if (result.parts.size() < 2)
         throw InputError(options.files[0]
                          + (options.components ? ": --components finds one part; give several files"
@@ -267,6 +311,11 @@ Result search(const Options& options) {
             // Depths are float32: a tenth is a little more.
             return c.kind != ClashKind::nearby && c.depth && *c.depth <= *options.ignore_touching * (1 + 1e-6);
         });
+    if (!options.group.empty())
+        result.groups = options.group == "part"
+                            ? group_by_part(result.parts, result.report.clashes)
+                            : group_by_assembly(result.parts, result.report.clashes,
+                                                read_number<std::uint32_t>(options.group).value_or(0));
     return result;
 }
 
@@ -280,6 +329,8 @@ void run_path(const Options& options) {
                                       {options.tolerance > 0, "--tolerance"},
                                       {options.ignore_touching.has_value(), "--ignore-touching"},
                                       {options.volume, "--volume"},
+                                      {options.separation, "--separation"},
+                                      {!options.group.empty(), "--group"},
                                       {!options.out.empty(), "--out"},
                                       {!options.csv.empty(), "--csv"},
                                       {!options.bcf.empty(), "--bcf"}})
@@ -300,6 +351,11 @@ void run_path(const Options& options) {
 }
 
 void run_clash(const Options& options) {
+    if (options.tree) {
+        const std::vector<AssemblyPart> parts = load(options);
+        std::cout << (options.json ? tree_json(parts) : tree_text(parts)) << std::flush;
+        return;
+    }
     if (options.moves()) return run_path(options);
     if (!options.bcf.empty() && options.unit.empty())
         throw InputError("--bcf: has metres, and nothing says which unit the files have; give --unit m, mm, cm or in");
@@ -307,20 +363,22 @@ void run_clash(const Options& options) {
     auto csv = claim(options.files, "--csv", options.csv, ".csv");
     auto bcf = claim(options.files, "--bcf", options.bcf, ".bcfzip");
     const Result result = search(options);
-    const Unit& unit = options.length_unit();
+    const LengthUnit unit = options.length_unit();
     if (options.json) {
         std::cout << json_lines(result, options) << std::flush;
         std::cerr << summary(result);
     } else {
-        std::cout << table(result, unit.name) << summary(result) << std::flush;
+        std::cout << (options.group.empty() ? table(result, unit.name) : group_table(result, unit.name))
+                  << summary(result) << std::flush;
     }
     const std::vector<Clash>& clashes = result.report.clashes;
     if (out) write(out, clash::coloured_glb(result.parts, clashes));
-    if (csv) write(csv, clash::csv(result.parts, clashes, options.unit));
+    if (csv) write(csv, clash::csv(result.parts, clashes, options.unit, result.groups));
     if (bcf) {
         const auto now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
         write(bcf, clash::bcf_zip(result.parts, clashes,
-                                  {unit.metres, unit.name, fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now))}));
+                                  {unit.metres, unit.name, fmt::format("{:%Y-%m-%dT%H:%M:%SZ}", fmt::gmtime(now)),
+                                   result.groups}));
     }
     if (!options.check || stop_signal() != 0) return;
     if (!clashes.empty()) throw EndWith{found};
@@ -342,7 +400,7 @@ void add_clash(CLI::App& app) {
     // One word each, so that FILES may follow.
     command
         ->add_option("--against", options->against,
-                     "test parts or files of this name (* and ? stand for any) against "
+                     "test parts or files of this name (* and ? stand for any; with / what ends a path) against "
                      "all others, and no more; may be given again")
         ->type_name("SET")
         ->expected(1)
@@ -368,7 +426,13 @@ void add_clash(CLI::App& app) {
     const auto add_length = [&](const char* option, auto& length, const char* help) {
         add_number(*command, option, length, help, 0.0, most)->type_name("LENGTH");
     };
-    add_length("--clearance", options->clearance, "also find parts that are no farther apart than this");
+    command
+        ->add_option("--clearance", options->clearance,
+                     "also find parts that are no farther apart than this; LENGTH:SET: those of which one is of this "
+                     "name or pattern, LENGTH:SET:SET: and the other of that; may be given again: the largest counts")
+        ->type_name("LENGTH")
+        ->expected(1)
+        ->take_all();
     add_length("--tolerance", options->tolerance, "depths and gaps up to this are touching");
     add_length("--ignore-touching", options->ignore_touching,
                "leave out clashes no deeper than this; 0: those that only touch. Those without a depth stay");
@@ -378,13 +442,15 @@ void add_clash(CLI::App& app) {
                                  with_3mf("; 3MF says its own and is brought to this one")))
         ->type_name("UNIT")
         ->check([](const std::string& word) {
-            if (std::ranges::any_of(units, [&](const Unit& unit) { return word == unit.name; })) return std::string();
+            if (length_unit(word)) return std::string();
             return "\"" + word + "\" is no unit; give m, mm, cm or in";
         });
     add_weld_option(*command, options->weld)->type_name("LENGTH");
     command->add_flag("--components", options->components,
                       "split parts into their connected components, each solid with its cavities");
     command->add_flag("--volume", options->volume, "also find the volume that two parts share (slow)");
+    command->add_flag("--separation", options->separation,
+                      "also find the translation that parts two parts (slow: seconds for large ones)");
     add_number(*command, "--threads", options->threads, "0: one for each core", 0u, 1024u);
     add_out(*command, "--out", options->out, "write all parts there as .glb, those that clash in red")
         ->type_name("FILE.glb");
@@ -392,6 +458,18 @@ void add_clash(CLI::App& app) {
     add_out(*command, "--bcf", options->bcf,
             "write the clashes there as topics of BIM Collaboration Format 2.1; needs --unit")
         ->type_name("FILE.bcfzip");
+    command
+        ->add_option("--group", options->group,
+                     "print groups of clashes: part: those of one part; assembly: those of what is under one node "
+                     "with what is under another; a number: the same of nodes that many below the root")
+        ->type_name("part|assembly|N")
+        ->check([](const std::string& word) {
+            const auto level = read_number<std::uint32_t>(word);
+            return word == "part" || word == "assembly" || (level && *level > 0)
+                       ? std::string()
+                       : "\"" + word + "\" is no group; give part, assembly or a number from 1 on";
+        });
+    command->add_flag("--tree", options->tree, "print the parts and the nodes that they are under, and search nothing");
     command->add_flag("--json", options->json, "print one JSON line a clash on stdout");
     command->add_flag("--check", options->check, "exit status 3 where parts clash");
     command->footer(

@@ -56,8 +56,9 @@ Pose turned(const Vec3& axis, const Vec3& point, double degrees) {
 std::string line_of(const PathClash& c, std::span<const AssemblyPart> parts, const ClashPath& path,
                     const std::string& unit) {
     const std::string how = c.meet ? "meet" : fmt::format("{} {} apart", float(c.place.distance), unit);
-    return fmt::format("{:>18}  {:>12}  {}  x  {}  at {}, {}, {}\n", how, path.at(c.place.time), parts[c.moving].name,
-                       parts[c.other].name, c.place.point_a.x, c.place.point_a.y, c.place.point_a.z);
+    return fmt::format("{:>18}  {:>12}  {}  x  {}  at {}, {}, {}\n", how, path.at(c.place.time),
+                       path_of(parts[c.moving]), path_of(parts[c.other]), c.place.point_a.x, c.place.point_a.y,
+                       c.place.point_a.z);
 }
 
 } // namespace

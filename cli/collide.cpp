@@ -4,11 +4,13 @@
 #include "cli/cavities_option.h"
 #include "cli/common_options.h"
 #include "cli/pairs_file.h"
+#include "cli/separation.h"
 #include "cli/weld_option.h"
 
 #include <raycontact/collide.h>
 #include <raycontact/error.h>
 #include <raycontact/scene.h>
+#include <raycontact/separation.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -32,7 +34,7 @@ using Json = nlohmann::ordered_json;
 struct CollideCommand {
     std::string a, b, pairs_file;
     std::vector<double> at, turn; ///< of b
-    bool json = false;
+    bool json = false, separation = false;
     Settings settings;
     std::optional<Nesting> nested;
     std::optional<double> weld; ///< metres
@@ -110,14 +112,16 @@ Json to_json(const Contact& contact) {
 }
 
 /// apart: how far they are, metres; 0: they intersect.
-void print_json(std::size_t index, double apart, std::span<const Contact> contacts) {
+void print_json(std::size_t index, double apart, std::span<const Contact> contacts,
+                const std::optional<Separation>& separation) {
     Json list = Json::array();
     for (const Contact& contact : contacts) list.push_back(to_json(contact));
-    const Json line{{"pair", index},
-                    {"colliding", !contacts.empty()},
-                    {"intersecting", apart == 0},
-                    {"distance", apart},
-                    {"contacts", std::move(list)}};
+    Json line{{"pair", index},
+              {"colliding", !contacts.empty()},
+              {"intersecting", apart == 0},
+              {"distance", apart},
+              {"contacts", std::move(list)}};
+    if (separation) line["separation"] = separation_json(*separation);
     std::cout << line.dump() << '\n';
 }
 
@@ -136,20 +140,22 @@ void print_rows(const std::vector<std::vector<std::string>>& rows) {
 
 /// Numbers in full: six digits are metres where coordinates are of a country's map.
 void print_table(std::size_t index, const QueryPair& pair, double apart, std::span<const Contact> contacts,
-                 bool weighted) {
+                 const std::optional<Separation>& separation, bool weighted) {
     const bool intersecting = apart == 0;
     const std::string distance = fmt::format("apart by {} m", apart);
+    const std::string end =
+        separation && intersecting ? "; " + separation_words(*separation, "m") + "\n" : std::string("\n");
     std::cout << fmt::format("pair {}: {} and {}: ", index, pair[0].file.string(), pair[1].file.string());
     if (contacts.empty()) {
         std::cout << (intersecting ? "intersecting, 0 contacts (touching, or no rule of contact applies)" : distance)
-                  << '\n';
+                  << end;
         return;
     }
     const auto deepest = std::max_element(contacts.begin(), contacts.end(),
                                           [](const Contact& p, const Contact& q) { return p.depth < q.depth; });
-    std::cout << fmt::format("{}, {} contact{}{}, deepest {} m\n", intersecting ? "intersecting" : distance,
+    std::cout << fmt::format("{}, {} contact{}{}, deepest {} m{}", intersecting ? "intersecting" : distance,
                              contacts.size(), contacts.size() == 1 ? "" : "s",
-                             intersecting ? "" : " of open meshes, each behind the other", deepest->depth);
+                             intersecting ? "" : " of open meshes, each behind the other", deepest->depth, end);
     std::vector<std::vector<std::string>> rows{{"body", "feature", "number", "triangle", "depth (m)", "ray (m)",
                                                 "x (m)", "y (m)", "z (m)", "normal x", "normal y", "normal z"}};
     if (weighted) rows[0].emplace_back("weight (m^2)");
@@ -171,7 +177,7 @@ void print_table(std::size_t index, const QueryPair& pair, double apart, std::sp
 /// Bodies 2i and 2i + 1 are a and b of pair i, so a is always the lower one. One batch is one step; its size bounds
 /// the memory of a query of any length.
 StepStats collide_batch(const Settings& settings, std::span<const QueryPair> pairs, ShapeCache& shapes,
-                        std::size_t first, bool json) {
+                        std::size_t first, const CollideCommand& options) {
     Scene scene(settings);
     std::vector<Pair> list;
     list.reserve(pairs.size());
@@ -190,8 +196,12 @@ StepStats collide_batch(const Settings& settings, std::span<const QueryPair> pai
         // A contact shows that they intersect, unless neither has an inside.
         const bool solid = scene.shape(a).has_inside() || scene.shape(b).has_inside();
         const double apart = solid && !own.empty() ? 0 : scene.distance(a, b)->distance;
-        json ? print_json(first + i, apart, own)
-             : print_table(first + i, pairs[i], apart, own, settings.direction == Direction::weighted);
+        std::optional<Separation> parted;
+        if (options.separation) parted = separation(scene.shape(a), pairs[i][0].pose, scene.shape(b), pairs[i][1].pose);
+        if (options.json)
+            print_json(first + i, apart, own, parted);
+        else
+            print_table(first + i, pairs[i], apart, own, parted, settings.direction == Direction::weighted);
         begin = end;
     }
     return scene.stats();
@@ -249,7 +259,7 @@ void collide(const CollideCommand& options) {
     for (std::size_t first = 0; first < pairs.size(); first += batch) {
         const std::size_t count = std::min(batch, pairs.size() - first);
         const StepStats stats =
-            collide_batch(options.settings, std::span(pairs).subspan(first, count), shapes, first, options.json);
+            collide_batch(options.settings, std::span(pairs).subspan(first, count), shapes, first, options);
         kept += stats.contacts;
         left_out += stats.contacts_reduced;
     }
@@ -277,6 +287,8 @@ void add_collide(CLI::App& app) {
     };
     three("--at", options->at, "move B there, metres");
     three("--turn", options->turn, "turn B first, degrees: about the axes x, then y, then z, through its origin");
+    command->add_flag("--separation", options->separation,
+                      "also find the translation that parts two meshes (slow: seconds for large ones)");
     command->add_flag("--json", options->json, "print one JSON line a pair on stdout");
     add_cavities_option(*command, options->nested);
     add_weld_option(*command, options->weld);

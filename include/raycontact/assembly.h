@@ -22,7 +22,13 @@ struct AssemblyPart {
     /// Number of the part that its node is under, the nearest one; no_part where there is none.
     std::size_t parent = no_part;
     static constexpr std::size_t no_part = static_cast<std::size_t>(-1); ///< the number of none
+    /// Names of the nodes, of 3MF the objects, that it is under, with a mesh or without, from the root; of names of
+    /// more than 1024 bytes in all the nearest ones.
+    std::vector<std::string> under{};
 };
+
+/// What a part is under, and its name, with "/" between: "Building/Floor 2/Pipe 7".
+RAYCONTACT_API std::string path_of(const AssemblyPart& part);
 
 /// Of a glTF file each node of its scene that places a mesh, in node order; an instance of a node is "NODE[3]". Of a
 /// 3MF file each object with a mesh as often as its build places it. Of an OBJ file its objects (`o`) if there are

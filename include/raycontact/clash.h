@@ -5,6 +5,7 @@
 #include <raycontact/error.h>
 #include <raycontact/export.h>
 #include <raycontact/query.h>
+#include <raycontact/separation.h>
 #include <raycontact/shape.h>
 
 #include <array>
@@ -57,20 +58,33 @@ struct Clash {
     /// about the curves in which they cross. None: they touch, or are near.
     std::optional<AxisBox> box;
     std::optional<double> volume; ///< that they share, m^3, if asked for; none where one has no inside
+    /// The translation of b that parts them, as separation() finds it, if asked for; none where one has no inside, and
+    /// where they touch or are near.
+    std::optional<Separation> separation;
+};
+
+/// How near some pairs may come.
+struct ClearanceOf {
+    double clearance = 0; ///< metres
+    /// Patterns as of ClashOptions::against: of pairs of which one part matches the one, and the other the other.
+    std::array<std::string, 2> parts{"*", "*"};
 };
 
 /// What find_clashes() looks for.
 struct ClashOptions {
-    /// Patterns of names of parts or files ("*" stands for any text, "?" for a character). Parts that match are tested
-    /// against all that do not. Empty: all against all.
+    /// Patterns of names of parts or files ("*" stands for any text, "?" for a character); with "/" also of path_of()
+    /// or its end, so that "Floor 2/*" are all parts under nodes of that name. Parts that match are tested against all
+    /// that do not. Empty: all against all.
     std::vector<std::string> against{};
     /// Pairs of such patterns: parts of which one matches either are not tested against each other.
     std::vector<std::array<std::string, 2>> exclude{};
-    bool exclude_parent_child = false; ///< leaves out pairs of a part and its AssemblyPart::parent
-    double clearance = 0;              ///< metres; pairs not farther apart are `near`
-    double tolerance = 0;              ///< metres; gaps, and depths but of two open parts, up to it are `touching`
-    bool volumes = false;              ///< asks for Clash::volume: seconds for parts of 100 000 triangles
-    std::uint32_t threads = 0;         ///< 0: one per core; no result depends on it
+    bool exclude_parent_child = false;     ///< leaves out pairs of a part and its AssemblyPart::parent
+    double clearance = 0;                  ///< metres; pairs not farther apart are `near`
+    std::vector<ClearanceOf> clearances{}; ///< of some pairs; of all that apply, and `clearance`, the largest counts
+    double tolerance = 0;                  ///< metres; gaps, and depths but of two open parts, up to it are `touching`
+    bool volumes = false;                  ///< asks for Clash::volume: seconds for parts of 100 000 triangles
+    bool separations = false;  ///< asks for Clash::separation: some times the search, seconds for large parts
+    std::uint32_t threads = 0; ///< 0: one per core; no result depends on it
     /// Told what is done, from 0 to 1; from any thread, but from one at a time.
     std::function<void(double)> progress = [](double) {};
     std::function<bool()> stop = [] { return false; }; ///< asked on any thread; true: the search ends there
@@ -81,13 +95,14 @@ struct ClashReport {
     /// Deepest first, then those without a depth, then those that touch, then those that are near, the nearest first;
     /// ties in the parts' order.
     std::vector<Clash> clashes;
-    std::size_t pairs = 0; ///< that were tested: their boxes, grown by clearance or tolerance, touch
+    std::size_t pairs = 0; ///< that were tested: their boxes are no farther apart than clearance or tolerance
     std::vector<std::pair<std::size_t, std::string>> faults; ///< parts that could not be tested, and why; rising
     std::vector<std::size_t> open;                           ///< parts that were tested and have no inside; rising
 };
 
 /// The parts of all files, in their order (load_assembly), under names that differ: where several have the same, the
-/// file is set before it, or a number is added. left_out: gets a line for each thing that was left out or mended, with
+/// file is set before it, or a number is added. Of several files each is the root of what its parts are under, unless
+/// it is one part of that name. left_out: gets a line for each thing that was left out or mended, with
 /// the file before it. Throws InputError as load_mesh().
 RAYCONTACT_API std::vector<AssemblyPart> load_parts(const std::vector<std::filesystem::path>& files,
                                                     std::vector<std::string>* left_out = nullptr);
@@ -109,6 +124,26 @@ RAYCONTACT_API std::vector<AssemblyPart> split_components(const std::vector<Asse
 /// that matches all, and more than 1024 threads.
 RAYCONTACT_API ClashReport find_clashes(std::span<const AssemblyPart> parts, const ClashOptions& options = {});
 
+/// Clashes that are one matter for a person.
+struct ClashGroup {
+    std::string a;                    ///< path_of() the part that all have, or of what their parts are in
+    std::string b;                    ///< of the other, which may be the same; of several other parts empty
+    std::vector<std::size_t> clashes; ///< which of those given, rising; so the first is the deepest
+    AxisBox box;                      ///< about their boxes, or points where they have none
+};
+
+/// Each clash in the group of one of its parts: first all those of the part that has the most, then of the one that
+/// has the most of what is left, and so on; of equals the lowest part. So 40 bolts in one flange are one group. In the
+/// order of their first clashes. clashes: of find_clashes(), or some of them, in their order. Throws InputError for
+/// clashes of parts that are not there.
+RAYCONTACT_API std::vector<ClashGroup> group_by_part(std::span<const AssemblyPart> parts,
+                                                     std::span<const Clash> clashes);
+/// All clashes of what is in one assembly with what is in another, or in the same, are a group. level: 0: a part's
+/// assembly is the node that it is under; else that of the first `level` names of its path. A part that is under none,
+/// or has no more names, is one by itself. Order and errors as group_by_part().
+RAYCONTACT_API std::vector<ClashGroup> group_by_assembly(std::span<const AssemblyPart> parts,
+                                                         std::span<const Clash> clashes, std::size_t level = 0);
+
 /// Two parts of which the first moves.
 struct PathClash {
     std::size_t moving = 0; ///< number of a part
@@ -119,8 +154,8 @@ struct PathClash {
 
 /// What find_path_clashes() finds.
 struct PathClashReport {
-    /// Those that meet, the first one first; then those that come no farther apart than ClashOptions::clearance, the
-    /// nearest first; ties in the parts' order.
+    /// Those that meet, the first one first; then those that come no farther apart than their clearance, the nearest
+    /// first; ties in the parts' order.
     std::vector<PathClash> clashes;
     /// Of all that stay apart those that come nearest to each other: the least clearance on the way.
     std::optional<PathClash> nearest;
@@ -132,7 +167,8 @@ struct PathClashReport {
 /// moving: patterns of their names. moves: poses that bring them from where they are placed to where they are at times
 /// 0, 1, ..., in the frame of the assembly, by a screw from each to the next (time_of_impact()); one at least. Times,
 /// distances and tolerances are those of path_clearance(). Of options count exclude, exclude_parent_child, clearance,
-/// threads, progress and stop. Throws InputError as find_clashes(), and for moves that are none or not rigid.
+/// clearances, threads, progress and stop. Throws InputError as find_clashes(), and for moves that are none or not
+/// rigid.
 RAYCONTACT_API PathClashReport find_path_clashes(std::span<const AssemblyPart> parts,
                                                  const std::vector<std::string>& moving, std::span<const Pose> moves,
                                                  const ClashOptions& options = {});

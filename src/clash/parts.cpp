@@ -74,6 +74,8 @@ std::vector<AssemblyPart> load_parts(const std::vector<std::filesystem::path>& f
         const std::size_t first = parts.size();
         for (AssemblyPart& part : loaded[i].parts) {
             if (part.parent != AssemblyPart::no_part) part.parent += first;
+            if (files.size() > 1 && part.name != files[i].filename().string())
+                part.under.insert(part.under.begin(), part.file);
             parts.push_back(std::move(part));
         }
         if (left_out != nullptr)
@@ -153,9 +155,14 @@ Box box_of(const Part& part) {
 }
 
 void check_assembly(std::span<const AssemblyPart> parts, const ClashOptions& options) {
-    for (const auto& [length, what] : {std::pair{options.clearance, "clearance"}, {options.tolerance, "tolerance"}})
+    const auto check_length = [](double length, const std::string& what) {
         if (!(length >= 0 && std::isfinite(length)))
-            throw InputError(std::string("clash: the ") + what + " is no length; give a finite number of at least 0");
+            throw InputError("clash: the " + what + " is no length; give a finite number of at least 0");
+    };
+    check_length(options.clearance, "clearance");
+    check_length(options.tolerance, "tolerance");
+    for (const ClearanceOf& some : options.clearances)
+        check_length(some.clearance, "clearance of " + some.parts[0] + " and " + some.parts[1]);
     if (parts.size() < 2) throw InputError("clash: " + std::to_string(parts.size()) + " part given; give several");
     for (const AssemblyPart& part : parts) {
         if (!part.mesh) throw InputError("clash: " + part.name + " has no mesh");
@@ -194,6 +201,10 @@ std::vector<Part> parts_of(std::span<const AssemblyPart> given) {
     return parts;
 }
 
+double gap_between(const Box& a, const Box& b) {
+    return length(most(most(a.low - b.high, b.low - a.high), Vec3{}));
+}
+
 std::vector<PartPair> near_boxes(const std::vector<Part>& parts, double reach) {
     std::vector<Box> boxes(parts.size());
     Executor executor(0);
@@ -210,7 +221,8 @@ std::vector<PartPair> near_boxes(const std::vector<Part>& parts, double reach) {
     const std::span<const SlotPair> found = broad_phase.find(executor, tree, {grown, {}});
     std::vector<PartPair> pairs;
     pairs.reserve(found.size());
-    for (const auto& [a, b] : found) pairs.push_back({a, b, !boxes[a].touches(boxes[b])});
+    for (const auto& [a, b] : found)
+        if (const double gap = gap_between(boxes[a], boxes[b]); gap <= reach) pairs.push_back({a, b, gap});
     return pairs;
 }
 

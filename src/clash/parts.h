@@ -29,12 +29,15 @@ std::vector<Part> parts_of(std::span<const AssemblyPart> parts);
 /// About a part as it is placed, and what rounding adds.
 Box box_of(const Part& part);
 
-/// Two parts, by their numbers; the first is the lower.
+/// Two parts, by their numbers.
 struct PartPair {
     std::size_t a, b;
-    bool apart; ///< their boxes do not touch
+    double gap = 0;       ///< of their boxes, metres; 0: they touch
+    double clearance = 0; ///< that the two should have, metres
+    bool apart() const { return gap > 0; }
 };
-/// Whose boxes, each grown by half of `reach`, touch.
+double gap_between(const Box& a, const Box& b);
+/// Whose boxes are no farther apart, the first the lower; their clearance is not set.
 std::vector<PartPair> near_boxes(const std::vector<Part>& parts, double reach);
 
 /// Makes the shapes of all parts in these pairs, one for each mesh. A part that cannot have one gets a fault.

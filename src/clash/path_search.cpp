@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <tuple>
 
 namespace raycontact {
@@ -44,15 +45,6 @@ Box box_on_the_way(const Part& part, std::span<const Pose> path) {
     return {all.low - more, all.high + more};
 }
 
-double gap_between(const Box& a, const Box& b) {
-    return length(most(most(a.low - b.high, b.low - a.high), Vec3{}));
-}
-
-struct PathPair {
-    PartPair parts; ///< the moving one first
-    double gap;     ///< of their boxes, metres
-};
-
 /// Parts that move, and what they may meet.
 class PathSearch {
 public:
@@ -71,36 +63,34 @@ public:
         for (std::size_t a = 0; a < given.size(); ++a) {
             if (!selection.is_against(a)) continue;
             for (std::size_t b = 0; b < given.size(); ++b) // has() leaves out those that move, too
-                if (selection.has(a, b)) pairs_.push_back({{a, b, false}, gap_between(boxes[a], boxes[b])});
+                if (selection.has(a, b))
+                    pairs_.push_back({a, b, gap_between(boxes[a], boxes[b]), selection.clearance(a, b)});
         }
-        std::ranges::stable_sort(pairs_, {}, &PathPair::gap);
+        std::ranges::stable_sort(pairs_, {}, &PartPair::gap);
     }
 
     PathClashReport operator()() {
         PathClashReport report;
-        const auto far = std::ranges::upper_bound(pairs_, options_.clearance, {}, &PathPair::gap);
-        const std::span near(pairs_.begin(), far);
+        const auto is_near = [](const PartPair& pair) { return pair.gap <= pair.clearance; };
+        std::vector<PartPair> near;
+        std::ranges::copy_if(pairs_, std::back_inserter(near), is_near);
         report.pairs = near.size();
         make_shapes_of(near);
         std::vector<std::optional<PathClash>> found(near.size());
         Executor executor(options_.threads);
         executor.each(near.size(), 1, [&](std::uint32_t i) {
-            if (!options_.stop()) found[i] = ask(near[i].parts, options_.clearance);
+            if (!options_.stop()) found[i] = ask(near[i], near[i].clearance);
         });
-        std::vector<char> meets(near.size(), 0);
-        for (std::size_t i = 0; i < near.size(); ++i) {
-            if (!found[i]) continue;
-            report.clashes.push_back(*found[i]);
-            meets[i] = found[i]->meet ? 1 : 0;
-        }
+        for (const auto& one : found)
+            if (one) report.clashes.push_back(*one);
+        auto next = found.begin();
         for (std::size_t i = 0; i < pairs_.size() && !options_.stop(); ++i) {
-            if (i < meets.size() && meets[i] != 0) continue;
+            std::optional<PathClash> other = is_near(pairs_[i]) ? *next++ : std::nullopt;
             const double least = report.nearest ? report.nearest->place.distance : any_distance;
             if (pairs_[i].gap >= least) break;
             make_shapes_of({&pairs_[i], 1});
-            if (const auto other = i < near.size() && found[i] ? found[i] : ask(pairs_[i].parts, least);
-                other && !other->meet && other->place.distance < least)
-                report.nearest = other;
+            if (!other) other = ask(pairs_[i], least);
+            if (other && !other->meet && other->place.distance < least) report.nearest = other;
         }
         for (std::size_t i = 0; i < parts_.size(); ++i)
             if (!parts_[i].fault.empty()) report.faults.emplace_back(i, parts_[i].fault);
@@ -111,11 +101,11 @@ public:
     }
 
 private:
-    void make_shapes_of(std::span<const PathPair> pairs) {
+    void make_shapes_of(std::span<const PartPair> pairs) {
         std::vector<PartPair> wanted;
-        for (const PathPair& pair : pairs)
-            for (const std::size_t i : {pair.parts.a, pair.parts.b})
-                if (!parts_[i].shape && parts_[i].fault.empty()) wanted.push_back({i, i, false});
+        for (const PartPair& pair : pairs)
+            for (const std::size_t i : {pair.a, pair.b})
+                if (!parts_[i].shape && parts_[i].fault.empty()) wanted.push_back({i, i});
         const bool many = pairs.size() > 1;
         make_shapes(parts_, wanted, options_, [&](std::size_t done, std::size_t total) {
             if (many) options_.progress(double(done) / double(total));
@@ -140,7 +130,7 @@ private:
     const ClashOptions& options_;
     std::vector<Part> parts_;
     std::vector<std::vector<Pose>> paths_; ///< of parts that move
-    std::vector<PathPair> pairs_;          ///< the nearest boxes first
+    std::vector<PartPair> pairs_;          ///< the nearest boxes first
 };
 
 } // namespace

@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
 #include <optional>
 #include <tuple>
 #include <unordered_map>
@@ -56,12 +57,12 @@ struct Answer {
     BodyId body_a{};            ///< of a in the scene
 };
 
-Answer gap_between(const PartPair& pair, const Part& a, const Part& b, const ClashOptions& options) {
-    const double reach = std::max(options.clearance, options.tolerance);
+Answer near_answer(const PartPair& pair, const Part& a, const Part& b, const ClashOptions& options) {
+    const double reach = std::max(pair.clearance, options.tolerance);
     Answer answer;
     if (!(reach > 0)) return answer;
     const auto gap = distance(*a.shape, a.pose, *b.shape, b.pose, reach);
-    if (!gap || (gap->distance > options.tolerance && gap->distance > options.clearance)) return answer;
+    if (!gap || (gap->distance > options.tolerance && gap->distance > pair.clearance)) return answer;
     Clash clash = clash_of(pair);
     clash.distance = gap->distance;
     clash.point = clash.point_a = gap->point_a;
@@ -84,7 +85,7 @@ Answer answer_of(const PartPair& pair, const Part& a, const Part& b, std::span<c
     const double depth = *clash.depth, size = smaller_size(a, b);
     std::optional<Vec3> shared;
     if (sheets || depth <= noise * size) shared = common_point(*a.shape, a.pose, *b.shape, b.pose);
-    if (!shared && (sheets || contacts.empty())) return gap_between(pair, a, b, options);
+    if (!shared && (sheets || contacts.empty())) return near_answer(pair, a, b, options);
     Answer answer;
     answer.depth = depth;
     if (are_duplicates(a, b)) clash.kind = ClashKind::duplicate;
@@ -170,7 +171,6 @@ void set_kind(Answer& answer, const Part& a, const Part& b, const ClashOptions& 
         answer.is_doubtful = solid;
         clash.depth.reset();
     }
-    if (solid && options.volumes) clash.volume = overlap_volume(*a.shape, a.pose, *b.shape, b.pose);
 }
 
 /// Parts that cross without a contact touch if both are sound: closed, wound outward and not self-intersecting. Looks
@@ -197,8 +197,25 @@ void settle_doubts(std::span<Answer> answers, const std::vector<Part>& parts, Ex
         if (clash.kind != ClashKind::duplicate) clash.kind = ClashKind::touching;
         clash.depth = 0;
         clash.box.reset();
-        clash.volume.reset();
     }
+}
+
+/// What is asked for of solids that share more than points; it takes longer than to find them.
+void measure(std::span<Answer> answers, const std::vector<Part>& parts, const ClashOptions& options, Executor& executor,
+             const std::function<void(double)>& progress) {
+    std::mutex mutex;
+    std::size_t done = 0;
+    executor.each(answers.size(), 1, [&](std::uint32_t i) {
+        Clash& clash = *answers[i].clash;
+        const Part &a = parts[clash.a], &b = parts[clash.b];
+        if (options.stop()) return;
+        if (clash.box && a.shape->has_inside() && b.shape->has_inside()) {
+            if (options.volumes) clash.volume = overlap_volume(*a.shape, a.pose, *b.shape, b.pose);
+            if (options.separations) clash.separation = separation(*a.shape, a.pose, *b.shape, b.pose);
+        }
+        const std::lock_guard lock(mutex);
+        progress(double(++done) / double(answers.size()));
+    });
 }
 
 /// The bodies of the parts that are asked about.
@@ -208,7 +225,7 @@ public:
     Bodies(Scene& scene, const std::vector<Part>& parts, std::span<const PartPair> pairs) : of_(parts.size()) {
         std::vector<char> used(parts.size(), 0);
         for (const PartPair& pair : pairs)
-            if (!pair.apart) used[pair.a] = used[pair.b] = 1;
+            if (!pair.apart()) used[pair.a] = used[pair.b] = 1;
         for (std::size_t i = 0; i < parts.size(); ++i)
             if (used[i] != 0) of_[i] = scene.add(parts[i].shape, parts[i].pose);
     }
@@ -219,7 +236,9 @@ private:
 };
 
 std::vector<Answer> search(const std::vector<Part>& parts, std::span<const PartPair> pairs, const ClashOptions& options,
-                           Executor& executor, const std::function<void(std::size_t)>& progress) {
+                           Executor& executor, const std::function<void(double)>& progress) {
+    const bool measures = options.volumes || options.separations;
+    const double to_find = measures ? 0.2 : 1;
     Settings settings;
     settings.method = Method::standard;
     settings.direction = Direction::refined; // the depths of threads and tubes obey their bound
@@ -233,7 +252,7 @@ std::vector<Answer> search(const std::vector<Part>& parts, std::span<const PartP
         const std::span some = pairs.subspan(first, std::min(at_once, pairs.size() - first));
         std::vector<Pair> list;
         for (const PartPair& pair : some)
-            if (!pair.apart) list.push_back(bodies.of(pair));
+            if (!pair.apart()) list.push_back(bodies.of(pair));
         scene.find_contacts(list);
         std::vector<Answer> answers(some.size());
         const auto each = [&](auto&& work) {
@@ -242,8 +261,8 @@ std::vector<Answer> search(const std::vector<Part>& parts, std::span<const PartP
             });
         };
         each([&](Answer& answer, const PartPair& pair, const Part& a, const Part& b) {
-            if (pair.apart) {
-                answer = gap_between(pair, a, b, options);
+            if (pair.apart()) {
+                answer = near_answer(pair, a, b, options);
                 return;
             }
             const auto [body_a, body_b] = bodies.of(pair);
@@ -256,9 +275,11 @@ std::vector<Answer> search(const std::vector<Part>& parts, std::span<const PartP
         });
         for (const Answer& answer : answers)
             if (answer.clash) found.push_back(answer);
-        progress(first + some.size());
+        progress(to_find * double(first + some.size()) / double(pairs.size()));
     }
     settle_doubts(found, parts, executor, options.stop);
+    if (measures)
+        measure(found, parts, options, executor, [&](double done) { progress(to_find + (1 - to_find) * done); });
     return found;
 }
 
@@ -273,8 +294,11 @@ ClashReport find_clashes(std::span<const AssemblyPart> given, const ClashOptions
     check_assembly(given, options);
     const Selection selection(given, options);
     std::vector<Part> parts = parts_of(given);
-    std::vector<PartPair> pairs = near_boxes(parts, std::max(options.clearance, options.tolerance));
-    std::erase_if(pairs, [&](const PartPair& pair) { return !selection.has(pair.a, pair.b); });
+    std::vector<PartPair> pairs = near_boxes(parts, std::max(selection.largest_clearance(), options.tolerance));
+    for (PartPair& pair : pairs) pair.clearance = selection.clearance(pair.a, pair.b);
+    std::erase_if(pairs, [&](const PartPair& pair) {
+        return !selection.has(pair.a, pair.b) || pair.gap > std::max(pair.clearance, options.tolerance);
+    });
     ClashReport report;
     report.pairs = pairs.size();
     // Shapes take most of the time.
@@ -287,9 +311,8 @@ ClashReport find_clashes(std::span<const AssemblyPart> given, const ClashOptions
     }
     std::erase_if(pairs, [&](const PartPair& pair) { return !parts[pair.a].shape || !parts[pair.b].shape; });
     Executor executor(options.threads);
-    for (const Answer& answer : search(parts, pairs, options, executor, [&](std::size_t done) {
-             options.progress(shapes + (1 - shapes) * double(done) / double(pairs.size()));
-         }))
+    for (const Answer& answer :
+         search(parts, pairs, options, executor, [&](double done) { options.progress(shapes + (1 - shapes) * done); }))
         report.clashes.push_back(*answer.clash);
     std::sort(report.clashes.begin(), report.clashes.end(), [](const Clash& p, const Clash& q) {
         const auto rank = [](const Clash& c) { return -c.depth.value_or(1e-300); }; // any depth is more

@@ -2,6 +2,7 @@
 #include "clash/selection.h"
 
 #include <algorithm>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -31,10 +32,20 @@ bool matches(std::string_view pattern, std::string_view text) {
     return pattern.find_first_not_of('*', p) == none;
 }
 
-/// The parts that patterns match, by their names, files, or the names of these without folders.
+/// A path, or its end from some node on.
+bool matches_path(std::string_view pattern, std::string_view path) {
+    for (;;) {
+        if (matches(pattern, path)) return true;
+        const std::size_t node = path.find('/');
+        if (node == std::string_view::npos) return false;
+        path.remove_prefix(node + 1);
+    }
+}
+
+/// The parts that patterns match, by their names, files, or the names of these without folders; with "/" by paths, too.
 class Names {
 public:
-    explicit Names(std::span<const AssemblyPart> parts) {
+    explicit Names(std::span<const AssemblyPart> parts) : all_(parts) {
         for (std::size_t i = 0; i < parts.size(); ++i) {
             add(parts[i].name, i);
             if (parts[i].file.empty()) continue;
@@ -54,9 +65,13 @@ public:
             for (const auto& [name, parts] : parts_of_)
                 if (matches(pattern, name)) add_all(parts);
         }
+        if (pattern.find('/') != std::string::npos)
+            for (std::size_t i = 0; i < all_.size(); ++i)
+                if (matches_path(pattern, path_of(all_[i]))) found.push_back(i);
         if (found.empty())
-            throw InputError(what + ": no part and no file is called \"" + pattern
-                             + "\"; give a name as clash prints it, or a pattern with * or ?");
+            throw InputError(
+                what + ": no part and no file is called \"" + pattern
+                + "\"; give a name as clash prints it, or a pattern with * or ?, or with / as clash --tree has it");
         std::sort(found.begin(), found.end());
         found.erase(std::unique(found.begin(), found.end()), found.end());
         return found;
@@ -64,45 +79,77 @@ public:
 
 private:
     void add(const std::string& name, std::size_t part) { parts_of_[name].push_back(part); }
+    std::span<const AssemblyPart> all_;
     std::unordered_map<std::string, std::vector<std::size_t>> parts_of_;
 };
 
-bool share_one(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) {
+constexpr std::uint32_t no_pair = UINT32_MAX;
+
+/// The lowest that both have; no_pair: there is none.
+std::uint32_t shared(const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) {
     for (auto i = a.begin(), k = b.begin(); i != a.end() && k != b.end();) {
-        if (*i == *k) return true;
+        if (*i == *k) return *i;
         ++(*i < *k ? i : k);
     }
-    return false;
+    return no_pair;
+}
+
+using Matched = std::array<std::vector<std::vector<std::uint32_t>>, 2>;
+
+/// The lowest pair of patterns that two parts match, whichever matches which.
+std::uint32_t first_of(const Matched& matched, std::size_t a, std::size_t b) {
+    if (matched[0].empty()) return no_pair;
+    return std::min(shared(matched[0][a], matched[1][b]), shared(matched[0][b], matched[1][a]));
+}
+
+/// what: of a pair, for messages.
+Matched matched_by(const Names& names, std::size_t parts, const auto& patterns, const auto& what) {
+    Matched matched;
+    if (patterns.empty()) return matched;
+    for (std::size_t k = 0; k < 2; ++k) {
+        matched[k].resize(parts);
+        for (std::uint32_t i = 0; i < patterns.size(); ++i)
+            for (const std::size_t part : names.matched(patterns[i][k], what(i))) matched[k][part].push_back(i);
+    }
+    return matched;
 }
 
 } // namespace
 
 Selection::Selection(std::span<const AssemblyPart> parts, const ClashOptions& options, const char* word)
-    : parts_(parts), parent_child_(options.exclude_parent_child) {
-    if (options.against.empty() && options.exclude.empty()) return;
+    : parts_(parts), parent_child_(options.exclude_parent_child), clearance_(options.clearance),
+      clearances_(options.clearances) {
+    if (options.against.empty() && options.exclude.empty() && clearances_.empty()) return;
     const Names names(parts);
     if (!options.against.empty()) {
         against_.resize(parts.size(), 0);
         for (const std::string& pattern : options.against)
             for (const std::size_t part : names.matched(pattern, word)) against_[part] = 1;
         if (std::ranges::all_of(against_, [](char matched) { return matched != 0; }))
-            throw InputError(std::string(word) + ": all parts match, so there is nothing to test them against; name fewer");
+            throw InputError(std::string(word)
+                             + ": all parts match, so there is nothing to test them against; name fewer");
     }
-    if (options.exclude.empty()) return;
-    for (std::size_t k = 0; k < 2; ++k) {
-        excluded_[k].resize(parts.size());
-        for (std::uint32_t i = 0; i < options.exclude.size(); ++i)
-            for (const std::size_t part :
-                 names.matched(options.exclude[i][k], "exclude, pair " + std::to_string(i + 1)))
-                excluded_[k][part].push_back(i);
-    }
+    excluded_ = matched_by(names, parts.size(), options.exclude,
+                           [](std::uint32_t i) { return "exclude, pair " + std::to_string(i + 1); });
+    std::ranges::stable_sort(clearances_, std::greater(), &ClearanceOf::clearance);
+    std::vector<std::array<std::string, 2>> patterns;
+    for (const ClearanceOf& some : clearances_) patterns.push_back(some.parts);
+    cleared_ = matched_by(names, parts.size(), patterns, [](std::uint32_t) { return std::string("clearance"); });
 }
 
 bool Selection::has(std::size_t a, std::size_t b) const {
     if (!against_.empty() && against_[a] == against_[b]) return false;
     if (parent_child_ && (parts_[a].parent == b || parts_[b].parent == a)) return false;
-    if (excluded_[0].empty()) return true;
-    return !share_one(excluded_[0][a], excluded_[1][b]) && !share_one(excluded_[0][b], excluded_[1][a]);
+    return first_of(excluded_, a, b) == no_pair;
+}
+
+double Selection::clearance(std::size_t a, std::size_t b) const {
+    const std::uint32_t first = first_of(cleared_, a, b);
+    return first == no_pair ? clearance_ : std::max(clearance_, clearances_[first].clearance);
+}
+
+double Selection::largest_clearance() const {
+    return clearances_.empty() ? clearance_ : std::max(clearance_, clearances_[0].clearance);
 }
 
 } // namespace raycontact::clash

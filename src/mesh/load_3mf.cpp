@@ -5,6 +5,7 @@
 
 #ifdef RAYCONTACT_3MF
 
+#include "mesh/part_path.h"
 #include "mesh/placement.h"
 #include "mesh/xml_reader.h"
 #include "mesh/zip_file.h"
@@ -14,6 +15,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <ranges>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -259,7 +261,10 @@ public:
                 notes.insert(notes.end(), mesh.repairs.begin(), mesh.repairs.end());
                 made = std::make_shared<const Mesh>(std::move(mesh));
             }
-            parts.push_back({object.name, made, pose});
+            Ancestors above;
+            for (const Object* outer : open_ | std::views::reverse)
+                if (!above.add(outer->name)) break;
+            parts.push_back({object.name, made, pose, {}, AssemblyPart::no_part, std::move(above).from_root()});
         });
         add_left_out(notes);
         return parts;
@@ -310,7 +315,9 @@ private:
         const Placement placement = outer.after(component.placement);
         visit(object, placement);
         object.is_open = object.is_placed = true;
+        open_.push_back(&object);
         for (const Component& inner : object.components) place(inner, placement, depth + 1, visit);
+        open_.pop_back();
         object.is_open = false;
     }
 
@@ -356,6 +363,7 @@ private:
     ZipFile zip_;
     std::string root_;
     std::map<std::string, Model> models_;
+    std::vector<const Object*> open_;   ///< those that are being placed, each in the one before
     std::size_t placed_ = 0, made_ = 0; ///< objects; vertices and triangles
 };
 

@@ -3,6 +3,7 @@
 #include "mesh/gltf_file.h"
 #include "mesh/gltf_moves.h"
 #include "mesh/nonfinite_vertices.h"
+#include "mesh/part_path.h"
 #include "mesh/vector.h"
 
 #include <raycontact/assembly.h>
@@ -61,7 +62,10 @@ public:
             const Node& parent = nodes_[nodes_[n].parent];
             nodes_[n].above = parent.part != AssemblyPart::no_part ? parent.part : parent.above;
         }
-        for (std::size_t i = 0; i < parts.size(); ++i) parts[i].parent = nodes_[places[i]].above;
+        for (std::size_t i = 0; i < parts.size(); ++i) {
+            parts[i].parent = nodes_[places[i]].above;
+            parts[i].under = ancestors_of(places[i]);
+        }
         const std::vector<std::string> own = notes();
         told.insert(told.end(), own.begin(), own.end());
         return parts;
@@ -126,6 +130,13 @@ private:
             }
             if (with_others_.contains(number)) left_out_["points, lines or no positions"].push_back(name_of(node));
         }
+    }
+
+    std::vector<std::string> ancestors_of(std::size_t node) const {
+        Ancestors found;
+        for (std::size_t n = nodes_[node].parent; n != AssemblyPart::no_part; n = nodes_[n].parent)
+            if (!found.add(name_of(item("nodes", n)))) break;
+        return std::move(found).from_root();
     }
 
     /// In the node's frame (EXT_mesh_gpu_instancing).

@@ -99,8 +99,9 @@ TEST_F(Clash, DeepestFirstByFileName) {
         << "boxes of a and c do not touch; no progress bar where nobody sees it";
     const auto found = json_lines(result.out);
     ASSERT_EQ(found.size(), 2u);
-    EXPECT_EQ(keys_of(found[0]), (std::set<std::string>{"a", "b", "depth", "point", "contacts", "duplicate", "normal",
-                                                        "kind", "distance", "point_a", "point_b", "open", "box"}));
+    EXPECT_EQ(keys_of(found[0]),
+              (std::set<std::string>{"a", "b", "path_a", "path_b", "depth", "point", "contacts", "duplicate", "normal",
+                                     "kind", "distance", "point_a", "point_b", "open", "box"}));
     EXPECT_EQ(found[0]["a"], "b.obj");
     EXPECT_EQ(found[0]["b"], "c.obj");
     EXPECT_NEAR(found[0]["depth"].get<double>(), 0.3, 1e-5);
@@ -160,6 +161,25 @@ TEST_F(Clash, OneInsideAnother) {
     write_cube("hidden.obj", 0.1, 0.2);
     const json found = only_clash({"box.obj", "hidden.obj"});
     EXPECT_GT(found["depth"].get<double>(), 0.2);
+}
+
+TEST_F(Clash, SeparationsAreToldWhereAsked) {
+    write_cube("a.obj", 0);
+    write_cube("b.obj", 0.75);
+    write_cube("on it.obj", -1);
+    const auto found = clashes({"a.obj", "b.obj", "on it.obj", "--separation"});
+    ASSERT_EQ(found.size(), 2u);
+    const json& parted = found[0]["separation"];
+    EXPECT_EQ(keys_of(parted), (std::set<std::string>{"distance", "normal", "point_a", "point_b"}));
+    EXPECT_NEAR(parted["distance"].get<double>(), -0.25, 1e-4);
+    EXPECT_NEAR(parted["normal"][0].get<double>(), 1, 1e-6);
+    EXPECT_NEAR(parted["point_a"][0].get<double>(), 0.5, 1e-6);
+    EXPECT_TRUE(found[1]["separation"].is_null()) << "they touch";
+    const std::string text = run({"a.obj", "b.obj", "--separation", "--unit", "mm", "--csv", "parted.csv"}).out;
+    EXPECT_NE(text.find("  (parted by 0.25"), std::string::npos) << text;
+    EXPECT_NE(text.find(" mm along 1, 0, 0)\n"), std::string::npos) << text;
+    std::ifstream file(folder_.path() / "parted.csv", std::ios::binary);
+    EXPECT_NE(std::string(std::istreambuf_iterator<char>(file), {}).find(",,-0.25"), std::string::npos);
 }
 
 TEST_F(Clash, TheSamePartTwice) {
@@ -357,6 +377,28 @@ TEST_F(Clash, AgainstExcludeAndClearance) {
     EXPECT_EQ(run({"all.gltf", "--exclude", "everything.csv", "--clearance", "9", "--check"}).status, 0);
     EXPECT_EQ(run({"all.gltf", "--against", "post", "--clearance", "0.06", "--check"}).status, 3);
     EXPECT_EQ(pairs({"--clearance", "0.06", "--ignore-touching", "1"}), (Found{"wall-post near"}));
+    const auto near = [&](std::vector<std::string> options) {
+        Found found = pairs(std::move(options));
+        std::erase_if(found, [](const std::string& words) { return !words.ends_with(" near"); });
+        return found;
+    };
+    EXPECT_EQ(near({"--clearance", "0.06:wall"}), (Found{"wall-post near"}));
+    EXPECT_EQ(near({"--clearance", "0.06:pipe*"}), Found{});
+    EXPECT_EQ(near({"--clearance", "0.06:post:w*", "--clearance", "0.01"}), (Found{"wall-post near"}));
+    EXPECT_EQ(near({"--clearance", "0.06:post:pipe*", "--clearance", "0.01"}), Found{});
+    EXPECT_EQ(near({"--clearance", "60mm:wall", "--unit", "m"}), (Found{"wall-post near"}));
+    EXPECT_EQ(near({"--clearance", "40mm", "--unit", "m"}), Found{});
+    EXPECT_EQ(near({"--clearance", "1e-3in", "--clearance", "6cm", "--unit", "m"}), (Found{"wall-post near"}));
+    for (const auto& [word, why] : {std::pair{"60mm", "--unit"},
+                                    {"x:wall", "--clearance"},
+                                    {"0.06:", "pattern"},
+                                    {"0.06:wall:", "pattern"},
+                                    {"0.06ft", "--clearance"},
+                                    {"0.06:walls", "walls"},
+                                    {"1e10", "--clearance"},
+                                    {"", "--clearance"},
+                                    {"-1:wall", "--clearance"}})
+        expect_refused(run({"all.gltf", std::string("--clearance=") + word}), why);
     const ProgramResult text = run({"all.gltf", "--clearance", "60", "--unit", "mm"});
     EXPECT_NE(text.out.find(" mm apart  wall  x  post  at 2.3"), std::string::npos) << text.out;
     EXPECT_EQ(clashes({"all.gltf", "--unit", "in"})[0]["unit"], "in");
@@ -401,6 +443,36 @@ TEST_F(Clash, PartsUnderOtherParts) {
     EXPECT_EQ(found["a"], "flange");
     EXPECT_EQ(found["b"], "bolt");
     EXPECT_EQ(found["kind"], "duplicate");
+
+    // Nodes without a mesh are told, too: in paths, which patterns match, and as a tree.
+    EXPECT_EQ(found["path_a"], "pump/flange");
+    EXPECT_EQ(found["path_b"], "pump/group/bolt");
+    EXPECT_EQ(clashes({"tree.gltf", "--against", "group/*"}).size(), 2u);
+    EXPECT_EQ(clashes({"tree.gltf", "--against", "pump/*"}).size(), 2u) << "not the pump itself";
+    EXPECT_NE(run({"tree.gltf"}).out.find("  pump/flange  x  pump/group/bolt  at "), std::string::npos);
+    EXPECT_EQ(run({"tree.gltf", "--tree"}).out, "pump  (12 triangles)\n"
+                                                "pump/\n"
+                                                "  flange  (12 triangles)\n"
+                                                "  group/\n"
+                                                "    bolt  (12 triangles)\n");
+    write_cube("post.obj", 1.8);
+    EXPECT_EQ(run({"tree.gltf", "post.obj", "--tree"}).out, "tree.gltf/\n"
+                                                            "  pump  (12 triangles)\n"
+                                                            "  pump/\n"
+                                                            "    flange  (12 triangles)\n"
+                                                            "    group/\n"
+                                                            "      bolt  (12 triangles)\n"
+                                                            "post.obj  (12 triangles)\n");
+    const auto lines = json_lines(run({"tree.gltf", "post.obj", "--tree", "--json"}).out);
+    ASSERT_EQ(lines.size(), 4u);
+    EXPECT_EQ(lines[2]["path"], "tree.gltf/pump/group/bolt");
+    EXPECT_EQ(lines[2]["under"], (json{"tree.gltf", "pump", "group"}));
+    EXPECT_EQ(clashes({"tree.gltf", "post.obj", "--against", "tree.gltf/*"}).size(), 2u);
+    // A name that two files have gets its file; paths tell that once.
+    std::ofstream(folder_.path() / "more.gltf") << root.dump();
+    const json again = json_lines(run({"tree.gltf", "more.gltf", "--tree", "--json"}).out)[5];
+    EXPECT_EQ(again["name"], "more.gltf:bolt");
+    EXPECT_EQ(again["path"], "more.gltf/pump/group/bolt");
 }
 
 TEST_F(Clash, Table) {
@@ -412,13 +484,48 @@ TEST_F(Clash, Table) {
     const std::string text{std::istreambuf_iterator<char>(file), {}};
     EXPECT_TRUE(text.starts_with("a,b,kind,depth,distance,x,y,z,contacts,open,low_x,")) << text;
     EXPECT_NE(text.find("\r\na.obj,\"b, \"\"2\"\".obj\",overlapping,0.249"), std::string::npos) << text;
-    EXPECT_NE(text.find(",volume,unit\r\n"), std::string::npos) << text;
-    EXPECT_NE(text.find(",0.25,mm\r\na.obj,touch.obj,touching,0,0,-0.5,"), std::string::npos) << text;
-    EXPECT_TRUE(text.ends_with(",0,,,,,,,,,mm\r\n")) << text;
+    EXPECT_NE(text.find(",volume,separation,unit\r\n"), std::string::npos) << text;
+    EXPECT_NE(text.find(",0.25,,mm\r\na.obj,touch.obj,touching,0,0,-0.5,"), std::string::npos) << text;
+    EXPECT_TRUE(text.ends_with(",0,,,,,,,,,,mm\r\n")) << text;
     ASSERT_EQ(run({"a.obj", "touch.obj", "--csv", "out.csv"}).status, 0);
     std::ifstream untold(folder_.path() / "out.csv", std::ios::binary);
     const std::string without{std::istreambuf_iterator<char>(untold), {}};
-    EXPECT_TRUE(without.ends_with(",0,,,,,,,,,\r\n")) << without;
+    EXPECT_TRUE(without.ends_with(",0,,,,,,,,,,\r\n")) << without;
+}
+
+TEST_F(Clash, GroupsOfClashes) {
+    write_assembly("all.gltf", {{"flange", 0}, {"bolt", 0.9}, {"bolt", -0.8}, {"post", 1.75}, {"node", 0}, {"far", 9}});
+    std::ifstream file(folder_.path() / "all.gltf");
+    json root = json::parse(file);
+    root["nodes"][4].erase("mesh");
+    root["nodes"][4]["children"] = {1, 2};
+    root["scenes"][0]["nodes"] = {0, 3, 4, 5};
+    folder_.write("all.gltf", root.dump());
+    const auto groups = clashes({"all.gltf", "--group", "part", "--unit", "m"});
+    ASSERT_EQ(groups.size(), 2u);
+    EXPECT_EQ(keys_of(groups[0]), (std::set<std::string>{"a", "b", "count", "box", "clashes"}));
+    EXPECT_EQ(groups[0]["a"], "flange");
+    EXPECT_TRUE(groups[0]["b"].is_null());
+    EXPECT_EQ(groups[0]["count"], 2);
+    EXPECT_EQ(groups[0]["clashes"][0]["b"], "bolt #2") << "the deepest first";
+    EXPECT_NEAR(groups[0]["box"][0][0].get<double>(), -0.5, 1e-5);
+    EXPECT_NEAR(groups[0]["box"][1][0].get<double>(), 0.5, 1e-5);
+    EXPECT_EQ(groups[1]["a"], "node/bolt #1");
+    EXPECT_EQ(groups[1]["b"], "post");
+    EXPECT_EQ(groups[1]["clashes"][0], clashes({"all.gltf", "--unit", "m"})[1]);
+
+    const ProgramResult text = run({"all.gltf", "--group", "assembly", "--csv", "groups.csv"});
+    EXPECT_NE(text.out.find("  flange  x  node  2 clashes, in -0.5"), std::string::npos) << text.out;
+    EXPECT_NE(text.out.find("  node  x  post  1 clash, in 1.2"), std::string::npos) << text.out;
+    EXPECT_TRUE(text.out.ends_with("3 clashes among 5 parts (3 pairs of touching boxes) in 2 groups\n")) << text.out;
+    std::ifstream table(folder_.path() / "groups.csv", std::ios::binary);
+    const std::string lines{std::istreambuf_iterator<char>(table), {}};
+    EXPECT_NE(lines.find(",unit,group\r\n"), std::string::npos) << lines;
+    EXPECT_TRUE(lines.ends_with(",,1\r\n") || lines.ends_with(",,2\r\n")) << lines;
+    EXPECT_EQ(clashes({"all.gltf", "--group", "part", "--ignore-touching", "0.12"})[0]["count"], 1);
+    EXPECT_EQ(clashes({"all.gltf", "--group", "1"})[0]["b"], "node");
+    for (const char* bad : {"0", "parts", "-1", ""})
+        expect_refused(run({"all.gltf", std::string("--group=") + bad}), "--group");
 }
 
 TEST_F(Clash, SameForEveryNumberOfThreads) {

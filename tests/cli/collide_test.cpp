@@ -323,6 +323,23 @@ TEST_F(Collide, TwoFilesAndTheTable) {
               std::string::npos);
 }
 
+TEST_F(Collide, SeparationsPartMeshesOrAreTheirDistance) {
+    json apart = corner_pair();
+    apart["pose_b"] = translation(3, 0, 0);
+    const auto lines = json_lines(run(json::array({corner_pair(), apart}), {"--json", "--separation"}).out);
+    ASSERT_EQ(lines.size(), 2u);
+    const json &parted = lines[0]["separation"], &far = lines[1]["separation"];
+    EXPECT_EQ(keys_of(parted), (std::set<std::string>{"distance", "normal", "point_a", "point_b"}));
+    EXPECT_NEAR(parted["distance"].get<double>(), -0.2, 1e-4);
+    expect_vector(parted["normal"], 1, 0, 0);
+    EXPECT_EQ(far["distance"], lines[1]["distance"]);
+    expect_vector(far["normal"], 1, 0, 0);
+    EXPECT_FALSE(json_lines(run(json::array({apart})).out)[0].contains("separation"));
+    const std::string text = run(json::array({corner_pair(), apart}), {"--separation"}).out;
+    EXPECT_NE(text.find("; parted by 0.2"), std::string::npos) << text;
+    EXPECT_NE(text.find(": apart by 2 m\n"), std::string::npos) << text;
+}
+
 TEST_F(Collide, NoPairsIsNoOutput) {
     const auto result = run(json::array());
     EXPECT_EQ(result.status, 0) << result.err;

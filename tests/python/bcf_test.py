@@ -73,6 +73,25 @@ def test_topics_are_valid_and_cameras_look_at_their_points(tmp_path, unit, metre
         assert set(archive.namelist()) == set(texts), "the same topics from run to run"
 
 
+def test_topics_have_their_groups_as_labels(tmp_path):
+    for name, x in zip(NAMES, (0, 0.75, -0.75, 1.6), strict=True):
+        write(tmp_path, name, np.array([x, 0, 0]))
+    done = run(tmp_path, *NAMES, "--bcf", "out.bcfzip", "--unit", "m", "--group", "part", "--json")
+    groups = [json.loads(line) for line in done.stdout.splitlines()]
+    assert [group["count"] for group in groups] == [2, 1]
+    with zipfile.ZipFile(tmp_path / "out.bcfzip") as archive:
+        roots = [etree.fromstring(archive.read(name)) for name in archive.namelist() if name.endswith(".bcf")]
+    schema = etree.XMLSchema(file=str(SCHEMAS / "markup.xsd"))
+    labels = {}
+    for root in roots:
+        schema.assertValid(root)
+        labels[root.findtext("Topic/Title")] = [label.text for label in root.findall("Topic/Labels")]
+    for group in groups:
+        words = group["a"] if group["b"] is None else f"{group['a']} x {group['b']}"
+        for one in group["clashes"]:
+            assert labels[f"{one['a']} x {one['b']}"] == [one["kind"], words]
+
+
 def test_names_that_xml_does_not_have_are_replaced(tmp_path):
     write(tmp_path, "a\x01b.obj", np.zeros(3))
     name = os.fsdecode(b"\xff\xc0\x80.obj")

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Clashes of an assembly from Python."""
 
+import base64
 import json
 
 import meshes
@@ -52,6 +53,66 @@ def test_kinds_boxes_and_volumes():
     assert [one.kind for one in rc.clash(row(0, 0.999, 2.0), tolerance=0.0011)] == ["touching"] * 2
 
 
+def tree(file, places):
+    """Writes a glTF file of boxes of 1 m under nodes: places by path, "hall/pipe 1"."""
+    vertices, faces = meshes.box()
+    data = np.asarray(vertices, np.float32).tobytes() + np.asarray(faces, np.uint32).tobytes()
+    nodes, numbers = [], {}
+    for path, place in places.items():
+        names = path.split("/")
+        for depth in range(1, len(names) + 1):
+            own = "/".join(names[:depth])
+            if own not in numbers:
+                numbers[own] = len(nodes)
+                nodes.append({"name": names[depth - 1]})
+                if depth > 1:
+                    nodes[numbers["/".join(names[: depth - 1])]].setdefault("children", []).append(numbers[own])
+        nodes[numbers[path]] |= {"mesh": 0, "translation": [place, 0, 0]}
+    views = [{"buffer": 0, "byteOffset": start, "byteLength": size} for start, size in
+             ((0, 12 * len(vertices)), (12 * len(vertices), 12 * len(faces)))]  # fmt: skip
+    accessors = [
+        {"bufferView": 0, "componentType": 5126, "count": len(vertices), "type": "VEC3"},
+        {"bufferView": 1, "componentType": 5125, "count": 3 * len(faces), "type": "SCALAR"},
+    ]
+    uri = "data:application/octet-stream;base64," + base64.b64encode(data).decode()
+    roots = [numbers[path] for path in numbers if "/" not in path]
+    primitive = {"attributes": {"POSITION": 0}, "indices": 1}
+    file.write_text(json.dumps({
+        "asset": {"version": "2.0"}, "scenes": [{"nodes": roots}], "nodes": nodes, "accessors": accessors,
+        "meshes": [{"primitives": [primitive]}], "bufferViews": views,
+        "buffers": [{"byteLength": len(data), "uri": uri}],
+    }))  # fmt: skip
+    return file
+
+
+def test_paths_of_nodes_are_told_and_match(tmp_path):
+    hall = tree(
+        tmp_path / "hall.gltf", {"hall/pipes/pipe": 0, "hall/pipes/valve": 0.75, "hall/wall": 1.5, "post": 2.25}
+    )
+    found = rc.clash(hall)
+    assert found.paths == ["hall/pipes/pipe", "hall/pipes/valve", "hall/wall", "post"]
+    assert found.parts == ["pipe", "valve", "wall", "post"] and len(found) == 3
+    assert "hall/pipes/pipe  x  hall/pipes/valve" in str(found)
+
+    def pairs(**options):
+        return [(one.a, one.b) for one in rc.clash(hall, **options)]
+
+    assert pairs(against="pipes/*") == [("valve", "wall")] and pairs(against="hall/*") == [("wall", "post")]
+    assert pairs(exclude=[("pipes/*", "hall/*")]) == [("wall", "post")]
+    assert pairs(against="pipes/*", components=True) == [("valve", "wall")]
+    assert rc.clash([("a/b", BOX, None), ("c", BOX, None)], against="a/*").paths == ["a/b", "c"]
+
+
+def test_separations_part_what_clashes():
+    found = rc.clash(row(0, 0.75, 1.75), separations=True)
+    parted = found[0].separation
+    assert parted.distance == pytest.approx(-0.25, abs=1e-4) and np.allclose(parted.normal, [1, 0, 0])
+    away = rc.pose([0.75 - parted.distance * parted.normal[0], 0, 0])
+    assert not rc.intersects(BOX, BOX, None, away) and parted.point_a[0] == pytest.approx(0.5)
+    assert found[1].kind == "touching" and found[1].separation is None
+    assert rc.clash(row(0, 0.75))[0].separation is None
+
+
 def test_pairs_are_chosen():
     parts = row(0, 0.75, 1.5, 2.25)
 
@@ -65,6 +126,57 @@ def test_pairs_are_chosen():
     for options in [*bad, {"tolerance": float("nan")}]:
         with pytest.raises(rc.InputError):
             pairs(**options)
+
+
+def test_some_pairs_have_another_clearance():
+    parts = row(0, 1.02, 2.04, 3.1)
+
+    def pairs(*clearances, clearance=0.0):
+        found = rc.clash(parts, clearance=clearance, clearances=clearances)
+        return {(one.index_a, one.index_b) for one in found}
+
+    assert pairs((0.03, "part 0")) == {(0, 1)} and pairs((0.03, "*")) == {(0, 1), (1, 2)} == pairs(clearance=0.03)
+    assert pairs((0.07, "part 3", "part 2"), (0.03, "part 1", "part 3")) == {(2, 3)}
+    assert pairs((0.01, "*"), clearance=0.03) == {(0, 1), (1, 2)}
+    near = rc.clash_along(parts, "part 3", rc.slide((0, 0, 1), [0, 1]), clearances=[(0.07, "part 2")])
+    assert [(one.other, one.meet) for one in near] == [("part 2", False)]
+    for bad in [(0.1,), ("part 0", 0.1), 0.1, (0.1, ""), (0.1, "no"), (-1, "*"), (0.1, "*", "*", "*")]:
+        with pytest.raises(rc.InputError):
+            pairs(bad)
+
+
+def test_clearances_from_the_shell(tmp_path, capsys):
+    hall = tree(tmp_path / "hall.gltf", {"pipe": 0, "wall": 1.02, "post": 2.04})
+
+    def near(*words):
+        status, out, err = in_shell(
+            capsys, hall, "--json", *[word for given in words for word in ("--clearance", given)]
+        )
+        return [(one["a"], one["b"]) for one in map(json.loads, out.splitlines())] if status == 0 else err
+
+    assert near("0.03:pipe") == [("pipe", "wall")] and near("0.03:post:wall", "0.01") == [("wall", "post")]
+    assert near("0.01", "0.03:pipe:post") == [] and len(near("0.01", "0.03")) == 2
+    for bad in ("x", "-1", "nan", "0.03:", "0.03:no"):
+        assert "clearance" in near(bad)
+
+
+def test_clashes_are_grouped(tmp_path):
+    bolts = {f"hall/joint/bolt {i}": 0.8 + 0.01 * i for i in range(3)}
+    hall = tree(tmp_path / "hall.gltf", {"hall/flange": 0, **bolts, "post": -0.9})
+    found = rc.clash(hall, exclude=[("bolt*", "bolt*")])
+    (flange,) = found.groups()
+    assert (flange.a, flange.b, len(flange.clashes)) == ("hall/flange", None, 4) and flange.clashes == list(found)
+    assert np.allclose(flange.box[:, 0], [-0.5, 0.5], atol=1e-4)
+    groups = {(group.a, group.b): len(group.clashes) for group in found.groups("assembly")}
+    assert groups == {("hall", "hall/joint"): 3, ("hall", "post"): 1}
+    assert {(group.a, group.b) for group in found.groups(1)} == {("hall", "hall"), ("hall", "post")}
+    (pair,) = rc.clash(row(0, 0.5)).groups()
+    assert (pair.a, pair.b) == ("part 0", "part 1") and not rc.clash(row(0, 5)).groups("assembly")
+    near = rc.clash(row(0, 1.5), clearance=1).groups()[0]
+    assert np.allclose(near.box[:, 0], [0.5, 1])
+    for bad in ("parts", 0, -1, None):
+        with pytest.raises(rc.InputError):
+            found.groups(bad)
 
 
 def test_corners_that_differ_in_their_last_digits_are_welded():
@@ -170,6 +282,56 @@ def test_progress_is_told_and_may_end_the_search():
     with pytest.raises(LookupError, match="enough"):
         rc.clash(row(0, 0.5, 1), progress=refuse)
     assert len(rc.clash(row(0, 0.5, 1), progress=True)) == 3
+
+
+def door():
+    """A door of 1 m about a hinge at (5, 0, 0), a wall that it meets, and a post that it passes."""
+    size = {"door": (0.9, 0.04, 2), "wall": (0.8, 0.1, 2), "post": (0.1, 0.1, 2)}
+    at = {"door": (5.55, 0, 1), "wall": (4.9, 0.55, 1), "post": (5.25, -0.85, 1)}
+    return [(name, rc.box(size[name]), rc.pose(at[name])) for name in size]
+
+
+def test_what_moves_is_told_what_it_meets_and_when():
+    angles = np.linspace(0, np.radians(120), 3)
+    found = rc.clash_along(door(), "d*r", rc.turn((0, 0, 1), angles, (5, 0, 0)), at=np.degrees(angles))
+    (met,) = found
+    assert (met.moving, met.other, met.index_moving, met.index_other, met.meet) == ("door", "wall", 0, 1, True)
+    angle = np.arctan2(0.5, 0.3) - np.arcsin(0.02 / np.hypot(0.5, 0.3))  # its face comes to the wall's corner
+    assert met.at == pytest.approx(np.degrees(angle), abs=1e-3) and met.time == pytest.approx(2 * met.at / 120)
+    assert np.allclose(met.point_other[:2], [5.3, 0.5], atol=1e-5) and met.distance < 1e-5
+    assert found.nearest.other == "post" and not found.nearest.meet and "meet  at 57." in str(found)
+    # The other way it passes the post, which lies beyond its end: the corner of its end comes nearest.
+    angles = -angles
+    moves = rc.turn((0, 0, 1), angles, (5, 0, 0))
+    away = rc.clash_along(door(), ["door"], moves)
+    corner, post = np.hypot(1, 0.02), np.hypot(0.2, 0.8)
+    assert post < corner and [one.other for one in away] == ["post"], "it does not: it is met"
+    far = [*door()[:2], ("post", door()[2][1], rc.pose((5.25, -1.15, 1)))]
+    away = rc.clash_along(far, "door", moves, exclude=[("door", "wall")])
+    assert not away and not away.nearest.meet and away.nearest.at == away.nearest.time
+    assert away.nearest.distance == pytest.approx(np.hypot(0.2, 1.1) - corner, abs=2e-4)
+    assert rc.clash_along(far, "door", moves, clearance=0.2)[0].other == "post"
+    # A drawer; what stays in its place; all as files in millimetres have it.
+    (met,) = rc.clash_along(row(0, 3), "part 0", rc.slide((1, 0, 0), [0, 4]), at=[0, 4])
+    assert met.at == pytest.approx(2, abs=1e-5)
+    (met,) = rc.clash_along(row(0, 3000), "part 0", rc.slide((1, 0, 0), [0, 4]), scale=0.001)
+    assert met.at == pytest.approx((3 - 0.001) / 4, abs=1e-5)
+    assert rc.clash_along(row(0, 0.5), "part 0", np.eye(4))[0].time == 0
+
+
+def test_moves_that_are_none_are_refused():
+    moves = rc.slide((1, 0, 0), [0, 4])
+    for words in [{"moving": "no*"}, {"moving": []}, {"moving": "*"}, {"moves": np.empty((0, 4, 4))},
+                  {"moves": 2 * moves}, {"moves": moves[None]}, {"at": [1]}, {"at": [0, np.nan]},
+                  {"clearance": -1}]:  # fmt: skip
+        with pytest.raises(rc.InputError):
+            rc.clash_along(row(0, 3), **{"moving": "part 0", "moves": moves, **words})
+
+    def refuse(done):
+        raise LookupError("enough")
+
+    with pytest.raises(LookupError, match="enough"):
+        rc.clash_along(row(0, 3, 6), "part 0", rc.slide((1, 0, 0), [0, 9]), progress=refuse)
 
 
 def test_a_part_that_cannot_be_checked_is_named():

@@ -180,6 +180,53 @@ def test_grasps(example):
     assert rc.intersects(pad, part, grasps.pressed(paths, first.time, 5e-5)[closed].reshape(-1, 4, 4)).all()
 
 
+def test_arm(example, tmp_path):
+    arm = example("arm")
+    text = run("arm", "--picture", tmp_path / "arm.png")
+    cell, straight = arm.Cell(), arm.path(arm.START, arm.GOAL)
+    for shape in cell.links:
+        assert shape.report.good and not shape.report.repairs, shape.report
+    # Half of the way between two poses a link is not farther beside its joints' than the margin allows for.
+    for joints in (straight, arm.path(*arm.LIMITS)):
+        poses = arm.link_poses(joints)
+        middle, step = poses[:, :-1], np.linalg.inv(poses[:, :-1]) @ poses[:, 1:]
+        root = step
+        for _ in range(20):  # Newton's: the half of a screw, twice, is the whole
+            root = (root + np.linalg.inv(root) @ step) / 2
+        true = arm.link_poses((joints[:-1] + joints[1:]) / 2)
+        for shape, screws, own in zip(cell.links, middle @ root, true):
+            points = np.c_[shape.vertices, np.ones(len(shape.vertices))].T
+            assert np.linalg.norm((screws - own) @ points, axis=-2).max() < arm.MARGIN / 2
+
+    def gaps(joints, link):
+        """Of each board and link that it is tested against, by trying everything."""
+        poses = dict(zip(arm.LINKS, arm.link_poses(joints)))
+        placed = {name: brute_force.triangles_of(link, poses[name]) for name, link in zip(arm.LINKS, cell.links)}
+        boards = {board.name: brute_force.triangles_of(board.mesh, board.pose) for board in cell.shelf}
+        others = [other for name, other in cell.names if name == link]
+        return {other: brute_force.distance(placed[link], {**placed, **boards}[other]) for other in others}
+
+    # Where a link is said to meet a board first, it is a margin away from it, and farther from all others.
+    lines = re.findall(r"  (\S+|upper arm) +meets (\S+ \S+) +with joints at ([^d]*) deg", text)
+    assert {"forearm", "hand"} == {link for link, _, _ in lines}
+    for link, other, joints in lines:
+        found = gaps(np.radians([float(x) for x in joints.split()]), link)
+        assert found[other] == pytest.approx(arm.MARGIN, abs=1.5e-3) and min(found, key=found.get) == other
+    # The free way has the room that it is said to have.
+    lines = re.findall(r"  (\S+|upper arm) +([\d.]+) mm from (\S.*?) +with joints at ([^d]*) deg", text)
+    assert [link for link, _, _, _ in lines] == list(arm.LINKS)
+    for link, gap, other, joints in lines:
+        found = gaps(np.radians([float(x) for x in joints.split()]), link)
+        assert found[other] == pytest.approx(1e-3 * float(gap), abs=1.5e-3) and float(gap) > 1e3 * arm.MARGIN
+    way = [float(x) for x in re.search(r"through joints at (.*) deg", text)[1].split()]
+    for start, end in ((arm.START, np.radians(way)), (np.radians(way), arm.GOAL)):
+        poses = arm.link_poses(arm.path(start, end, 40))
+        for link in range(len(arm.LINKS)):
+            for board in cell.shelf:
+                assert not rc.intersects(cell.links[link], rc.Shape(board.mesh), poses[link], board.pose).any()
+    assert_picture(tmp_path / "arm.png")
+
+
 def test_methods(example, tmp_path):
     methods = example("methods")
     steps = 60

@@ -239,6 +239,27 @@ def test_poses_are_made_and_mended():
             bad()
 
 
+def test_turns_and_slides_are_about_axes_and_along_ways():
+    point, axis = np.array([1.0, 2, 3]), np.array([0.0, 0, 5])
+    turns = rc.turn(axis, np.linspace(0, np.pi, 5), point)
+    assert turns.shape == (5, 4, 4) and np.allclose(turns[0], np.eye(4))
+    assert np.allclose(helpers.placed(np.array([[2.0, 2, 3]]), turns[2]), [[1, 3, 3]])
+    for pose in rc.turn(RNG.normal(size=(9, 3)), RNG.normal(size=9), point):
+        assert np.allclose(helpers.placed(point[None], pose), point) and np.linalg.det(pose) == pytest.approx(1)
+    assert rc.turn((1, 0, 0), 0.5, np.zeros((4, 3))).shape == (4, 4, 4) and rc.turn((1, 0, 0), 0.5).shape == (4, 4)
+    assert np.array_equal(rc.slide((0, 2, 0), [1, 3]), rc.pose([[0, 1, 0], [0, 3, 0]]))
+    assert np.array_equal(rc.slide((0, 0, 1), -2), rc.pose([0, 0, -2]))
+    for bad in (
+        lambda: rc.turn((0, 0, 0), 1),
+        lambda: rc.turn((0, 0, 1), np.nan),
+        lambda: rc.turn((0, 0, 1), 1, (0, np.inf, 0)),
+        lambda: rc.slide((0, 0), 1),
+        lambda: rc.slide([(0, 0, 1), (0, 0, 0)], 1),
+    ):
+        with pytest.raises(rc.InputError):
+            bad()
+
+
 def test_poses_that_are_no_poses_are_named_as_they_were_given(torus):
     good = rc.pose(np.zeros((4, 3)))
     lost, drifted = good.copy(), good.copy()

@@ -112,6 +112,12 @@ rc.intersects(part, part, (Turn(), [0, 0, 1]), pose_b=(poses[:, :3, :3], points)
 rc.Scene().add(part, (Turn(), points))
 rc.pose([0, 0, 1], Turn())
 
+assert_type(rc.turn((0, 0, 1), [0.5, 1], points[0]), NDArray[np.float64])
+for met in rc.clash_along({"a": mesh, "b": other}, "a", rc.slide((0, 0, 1), [0, 1]), at=[0, 50]):
+    assert_type(met, rc.PathClash)
+    assert_type(met.at, float)
+rc.clash_along("part.glb", "a")  # wrong
+
 for name, sample in rc.samples().items():
     assert_type(sample, rc.Mesh)
 rc.collide(rc.ball(0.5), rc.capsule(1, 2)), rc.plane(), rc.plane(10, thickness=1)

@@ -13,13 +13,13 @@ InputError, a ValueError.
 
 from . import _core
 from ._core import DeviceInfo, InputError, MeshReport, StepStats, list_devices
-from .clash import Clash, Clashes, clash
+from .clash import Clash, Clashes, ClashGroup, PathClash, PathClashes, clash, clash_along
 from .collision import CollisionManager
 from .contacts import CONTACT_DTYPE, Contacts, FeatureKind, PairContacts
 from .grasps import wrench_cone
 from .impacts import BodyImpact, Impact, PathClearance, path_clearance, time_of_impact
 from .mesh import AssemblyPart, Mesh, load_assembly
-from .poses import nearest_rigid, pose, pose_from_quaternion
+from .poses import nearest_rigid, pose, pose_from_quaternion, slide, turn
 from .queries import (
     ClosestPoint,
     ContactPatches,
@@ -64,13 +64,13 @@ __version__: str = _core.version
 
 __all__ = [
     "AssemblyPart", "BodyClosestPoints", "BodyImpact", "BodyOverlaps", "BodyRayHits", "CONTACT_DTYPE", "Clash",
-    "Clashes", "ClosestPoint", "CollisionManager", "ContactPatches", "Contacts", "DeviceInfo", "Distance",
+    "ClashGroup", "Clashes", "ClosestPoint", "CollisionManager", "ContactPatches", "Contacts", "DeviceInfo", "Distance",
     "FeatureKind", "Impact", "InputError", "LostContacts", "Mass", "Mesh", "MeshReport", "OneBodyClosestPoint",
-    "OneBodyRayHit", "OneClosestPoint", "OneDistance", "OneRayHit", "OneSignedDistance", "PairContacts",
-    "PathClearance", "RayHit", "RecordedStep", "Recorder", "Recording", "Round", "Scene", "SceneState", "Separation",
-    "Shape", "SheetWarning", "SignedDistance", "StepStats", "Touches", "ball", "box", "capsule", "clash",
-    "closest_point", "collide", "common_point", "contact_patches", "contains", "distance", "distance_grid",
-    "heightfield", "intersects", "list_devices", "load_assembly", "nearest_rigid", "path_clearance", "plane", "pose",
-    "pose_from_quaternion", "raycast", "raycast_any", "samples", "separation", "show", "signed_distance",
-    "time_of_impact", "wrench_cone",
+    "OneBodyRayHit", "OneClosestPoint", "OneDistance", "OneRayHit", "OneSignedDistance", "PairContacts", "PathClash",
+    "PathClashes", "PathClearance", "RayHit", "RecordedStep", "Recorder", "Recording", "Round", "Scene", "SceneState",
+    "Separation", "Shape", "SheetWarning", "SignedDistance", "StepStats", "Touches", "ball", "box", "capsule", "clash",
+    "clash_along", "closest_point", "collide", "common_point", "contact_patches", "contains", "distance",
+    "distance_grid", "heightfield", "intersects", "list_devices", "load_assembly", "nearest_rigid", "path_clearance",
+    "plane", "pose", "pose_from_quaternion", "raycast", "raycast_any", "samples", "separation", "show",
+    "signed_distance", "slide", "time_of_impact", "turn", "wrench_cone",
 ]  # fmt: skip

@@ -9,10 +9,13 @@ import json
 import sys
 import warnings
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
 import raycontact as rc
+
+from .clash import ClearanceLike
 
 
 def _mesh(options: argparse.Namespace) -> int:
@@ -76,24 +79,52 @@ def _excluded(given: str) -> list[str | tuple[str, str]]:
     return pairs
 
 
+def _clearances(given: list[str]) -> tuple[float, list[ClearanceLike]]:
+    """LENGTH is of all pairs, LENGTH:SET and LENGTH:SET:SET of some."""
+    plain = 0.0
+    some: list[ClearanceLike] = []
+    for word in given:
+        length, *names = word.split(":", 2)
+        try:
+            metres = float(length)
+        except ValueError:
+            metres = -1.0
+        if not metres >= 0:
+            raise rc.InputError(f"--clearance {word}: begins with no length; give LENGTH, LENGTH:SET or LENGTH:SET:SET")
+        if names:
+            some.append((metres, names[0], names[1] if len(names) > 1 else "*"))
+        else:
+            plain = max(plain, metres)
+    return plain, some
+
+
 def _clash(options: argparse.Namespace) -> int:
     exclude = [pair for given in options.exclude for pair in _excluded(given)]
+    clearance, clearances = _clearances(options.clearance)
     found = rc.clash(
         options.files, scale=options.scale, weld=options.weld, components=options.components,
         against=options.against, exclude=exclude,
-        clearance=options.clearance, tolerance=options.tolerance, ignore_touching=options.ignore_touching,
-        progress=sys.stderr.isatty(),
+        clearance=clearance, clearances=clearances, tolerance=options.tolerance,
+        ignore_touching=options.ignore_touching, separations=options.separation, progress=sys.stderr.isatty(),
     )  # fmt: skip
     for fault in found.faults:
         print(f"not checked: {fault.name}: {fault.why}", file=sys.stderr)
     if options.json:
         for one in found:
             normal = None if one.normal is None else one.normal.tolist()
-            line = {"a": one.a, "b": one.b, "depth": one.depth, "point": one.point.tolist(), "contacts": one.contacts}
+            line: dict[str, Any] = {"a": one.a, "b": one.b}
+            line |= {"path_a": found.paths[one.index_a], "path_b": found.paths[one.index_b]}
+            line |= {"depth": one.depth, "point": one.point.tolist(), "contacts": one.contacts}
             line |= {"duplicate": one.duplicate, "normal": normal, "kind": one.kind, "distance": one.distance}
             line |= {"point_a": one.point_a.tolist(), "point_b": one.point_b.tolist()}
             line["open"] = [name for name, is_open in zip("ab", one.open, strict=True) if is_open]
-            print(json.dumps({**line, "box": None if one.box is None else one.box.tolist()}))
+            line["box"] = None if one.box is None else one.box.tolist()
+            if options.separation:
+                parted = one.separation
+                line["separation"] = parted and {
+                    name: value if name == "distance" else value.tolist() for name, value in parted._asdict().items()
+                }
+            print(json.dumps(line))
     else:
         print(found)
     if options.check and not found and found.faults:
@@ -141,8 +172,10 @@ def main(arguments: list[str] | None = None) -> int:
     clash.add_argument("--exclude", action="append", default=[], metavar="PAIRS", help=words)
     clash.add_argument("--weld", type=float, metavar="LENGTH", help="join vertices nearer than this, after --scale")
     clash.add_argument("--components", action="store_true", help="split parts into their connected components")
-    clash.add_argument("--clearance", type=float, default=0.0, metavar="LENGTH", help="also find those so near")
+    words = "also find those so near; LENGTH:SET or LENGTH:SET:SET: of such names; may be given again"
+    clash.add_argument("--clearance", action="append", default=[], metavar="LENGTH", help=words)
     clash.add_argument("--tolerance", type=float, default=0.0, metavar="LENGTH", help="up to this they are touching")
+    clash.add_argument("--separation", action="store_true", help="also find the translation that parts two (slow)")
     clash.add_argument("--ignore-touching", type=float, metavar="LENGTH", help="leave out clashes no deeper, metres")
     command("devices", _devices, "List the devices that contacts can be found on", checks=False)
 

@@ -214,7 +214,7 @@ def load_assembly(
     parts, left_out = _core.load_assembly(os.fspath(file))
     tell(f"{os.fspath(file)}: {words}" for words in left_out)
     made = scaled_parts(parts, scale, weld)
-    return split_parts(made, [], [])[0] if components else made
+    return split_parts(made, [], [], [])[0] if components else made
 
 
 def tell(left_out: Iterable[str]) -> None:
@@ -241,14 +241,17 @@ def scaled_parts(
 
 
 def split_parts(
-    parts: list[AssemblyPart], files: list[str], parents: list[int]
-) -> tuple[list[AssemblyPart], list[str], list[int]]:
-    """The components of parts, with their files and parents."""
+    parts: list[AssemblyPart],
+    files: list[str],
+    parents: list[int],
+    unders: list[list[str]],
+) -> tuple[list[AssemblyPart], list[str], list[int], list[list[str]]]:
+    """The components of parts, with their files, parents and the names of what they are under."""
     names, meshes = [part.name for part in parts], [part.mesh._core for part in parts]
     poses = np.stack([part.pose for part in parts])
-    (split, files, parents), left_out = _core.split_components(names, meshes, poses, files, parents)
+    (split, files, parents, unders), left_out = _core.split_components(names, meshes, poses, files, parents, unders)
     tell(left_out)
-    return scaled_parts(split, 1.0), files, parents
+    return scaled_parts(split, 1.0), files, parents, unders
 
 
 __all__ = ["AssemblyPart", "HasFaces", "Mesh", "MeshLike", "MeshReport", "load_assembly"]

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._arrays import PoseLike, RotationLike, as_numbers, as_poses, compose
+from ._arrays import PoseLike, RotationLike, as_numbers, as_points, as_poses, compose
 from ._core import InputError
 
 
@@ -42,6 +42,43 @@ def pose_from_quaternion(translation: ArrayLike, quaternion: ArrayLike) -> NDArr
     return pose(translation, np.stack([np.stack(row, axis=-1) for row in rows], axis=-2))
 
 
+def turn(axis: ArrayLike, angle: ArrayLike, point: ArrayLike = (0, 0, 0)) -> NDArray[np.float64]:
+    """(..., 4, 4) float64 that turn about axes (..., 3) through points (..., 3), metres, by angles (...), radians,
+    right-handed; they broadcast. Of a path from one to the next neighbours are less than half a round apart.
+
+    axis: of any length but 0. Raises InputError for one that is zero, and for numbers that are not finite.
+    """
+    half = _finite(angle, "angle")[..., np.newaxis] / 2
+    sine = np.sin(half) * _unit(axis, "axis")
+    cosine = np.broadcast_to(np.cos(half), (*sine.shape[:-1], 1))
+    rotation = pose_from_quaternion((0, 0, 0), np.concatenate((cosine, sine), axis=-1))[..., :3, :3]
+    at = _finite(as_points(point, "point"), "point")
+    return pose(at - (rotation @ at[..., np.newaxis])[..., 0], rotation)
+
+
+def slide(way: ArrayLike, length: ArrayLike) -> NDArray[np.float64]:
+    """(..., 4, 4) float64 that move along ways (..., 3), of any length but 0, by lengths (...), metres; they broadcast.
+
+    Raises InputError for a way that is zero, and for numbers that are not finite.
+    """
+    return pose(_finite(length, "length")[..., np.newaxis] * _unit(way, "way"))
+
+
+def _finite(value: ArrayLike, what: str) -> NDArray[np.float64]:
+    array = np.asarray(as_numbers(value, what), np.float64)
+    if not np.isfinite(array).all():
+        raise InputError(f"{what}: one is not finite")
+    return array
+
+
+def _unit(value: ArrayLike, what: str) -> NDArray[np.float64]:
+    vectors = _finite(as_points(value, what), what)
+    size = np.linalg.norm(vectors, axis=-1, keepdims=True)
+    if not (size > 0).all():
+        raise InputError(f"{what}: one is zero")
+    return vectors / size
+
+
 def nearest_rigid(poses: PoseLike) -> NDArray[np.float64]:
     """The rigid poses nearest to (..., 4, 4) that are not: drifted, scaled or sheared (polar decomposition).
 
@@ -51,4 +88,4 @@ def nearest_rigid(poses: PoseLike) -> NDArray[np.float64]:
     return _core.nearest_rigid(matrices.reshape(-1, 4, 4)).reshape(matrices.shape)
 
 
-__all__ = ["nearest_rigid", "pose", "pose_from_quaternion"]
+__all__ = ["nearest_rigid", "pose", "pose_from_quaternion", "slide", "turn"]

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Boxes, and solids of cubes, whose answers are known by hand; at the origin and at UTM coordinates.
+#include "mesh/vector.h"
+
 #include <raycontact/clash.h>
 
 #include <gtest/gtest.h>
@@ -7,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <set>
 
 namespace raycontact {
@@ -227,6 +230,43 @@ TEST(Clash, ToleranceWorksOnBothSides) {
     EXPECT_NEAR(found[3].distance, 0.02, 1e-12);
 }
 
+TEST(Clash, ClearancesOfSomePairs) {
+    std::vector<AssemblyPart> parts;
+    for (int i = 0; i < 3; ++i)
+        parts.push_back(box("pipe " + std::to_string(i), {1.02 * i, 0, 0}, {1.02 * i + 1, 1, 1}));
+    parts.push_back(box("wall", {-0.02 - 0.5, 0, 0}, {-0.02, 1, 1}));
+    parts.push_back(box("post", {0, 1.03, 1.04}, {1, 2, 2})); // 0.05 from pipe 0, whose box is nearer in each way
+    const auto near = [&](double plain, std::vector<ClearanceOf> some) {
+        ClashOptions options;
+        options.clearance = plain;
+        options.clearances = std::move(some);
+        std::set<std::pair<std::size_t, std::size_t>> found;
+        const ClashReport report = find_clashes(parts, options);
+        for (const Clash& c : report.clashes) {
+            EXPECT_EQ(c.kind, ClashKind::nearby);
+            found.emplace(c.a, c.b);
+        }
+        EXPECT_EQ(report.pairs, found.size()) << "boxes that lie along the axes are as far apart as what is in them";
+        return found;
+    };
+    using Pairs = std::set<std::pair<std::size_t, std::size_t>>;
+    EXPECT_EQ(near(0, {}), Pairs{});
+    EXPECT_EQ(near(0, {{0.03, {"wall", "*"}}}), (Pairs{{0, 3}}));
+    EXPECT_EQ(near(0, {{0.03, {"pipe*", "*"}}}), (Pairs{{0, 1}, {1, 2}, {0, 3}}));
+    EXPECT_EQ(near(0, {{0.03, {"pipe*", "pipe*"}}}), (Pairs{{0, 1}, {1, 2}}));
+    EXPECT_EQ(near(0, {{0.0501, {"post", "pipe 0"}}}), (Pairs{{0, 4}})) << "whichever comes first";
+    EXPECT_EQ(near(0, {{0.0499, {"pipe 0", "post"}}}), Pairs{});
+    EXPECT_EQ(near(0.03, {{0.01, {"pipe*", "*"}}}), (Pairs{{0, 1}, {1, 2}, {0, 3}})) << "the largest counts";
+    EXPECT_EQ(near(0.01, {{0.01, {"*", "*"}}, {0.0501, {"post", "*"}}, {0.02, {"post", "*"}}}), (Pairs{{0, 4}}));
+    EXPECT_EQ(near(0.01, {{0.03, {"pipe 0", "wall"}}, {0.03, {"pipe 2", "*"}}}), (Pairs{{0, 3}, {1, 2}}));
+    ClashOptions options;
+    for (const ClearanceOf& bad : {ClearanceOf{-1, {"*", "*"}}, ClearanceOf{std::nan(""), {"*", "*"}},
+                                   ClearanceOf{1, {"pipes", "*"}}, ClearanceOf{1, {"*", "pipe"}}}) {
+        options.clearances = {bad};
+        EXPECT_THROW(find_clashes(parts, options), InputError);
+    }
+}
+
 TEST(Clash, OpenPartsAreMarked) {
     AssemblyPart sheet{"sheet", nullptr, {}};
     sheet.mesh = std::make_shared<Mesh>(
@@ -272,6 +312,40 @@ TEST(Clash, ToleranceHoldsForOpenPartsWhereTheirDepthIsKnown) {
     EXPECT_EQ(kind(floor, sheet({0, -5, -0.001}, {0, 10, 0}, {0, 0, 10}), 1), ClashKind::overlapping);
 }
 
+TEST(Clash, SeparationsPartWhatSharesMoreThanPoints) {
+    for (const Vec3& off : {Vec3{}, Vec3{691234.5, 5334567.25, 512.125}}) {
+        std::vector<AssemblyPart> parts{
+            box("a", {0, 0, 0}, {4, 4, 4}),         box("corner", {3.75, 3, 3}, {5, 4.5, 4.5}),
+            box("inside", {0.5, 1, 1}, {1, 3, 3}),  box("through", {-1, 1, 3.5}, {5, 2, 3.75}),
+            box("again", {0, 0, 0}, {4, 4, 4}),     box("on it", {0, 0, 4}, {1, 1, 5}),
+            box("off it", {0, 4.125, 0}, {1, 5, 1})};
+        AssemblyPart sheet{"sheet", nullptr, {}};
+        sheet.mesh = std::make_shared<Mesh>(
+            Mesh{"sheet", {{-1, -1, 0.5}, {5, -1, 0.5}, {5, 5, 0.5}, {-1, 5, 0.5}}, {{0, 1, 2}, {0, 2, 3}}});
+        parts.push_back(sheet);
+        for (AssemblyPart& part : parts) part.pose.translation = off;
+        ClashOptions options;
+        options.against = {"a"};
+        options.clearance = 0.25;
+        for (const Clash& c : clashes_of(parts, options)) EXPECT_FALSE(c.separation) << "nobody asked";
+        options.separations = true;
+        const std::map<std::string, double> least{{"corner", 0.25}, {"inside", 1}, {"through", 0.5}, {"again", 4}};
+        std::size_t parted = 0;
+        for (const Clash& c : clashes_of(parts, options)) {
+            const std::string& name = parts[c.b].name;
+            ASSERT_EQ(c.separation.has_value(), least.contains(name)) << name;
+            if (!c.separation) continue;
+            ++parted;
+            EXPECT_NEAR(c.separation->distance, -least.at(name), 0.01 * least.at(name)) << name;
+            const auto shape = [&](std::size_t i) { return Shape::make(prepare_mesh(*parts[i].mesh)); };
+            Pose away = parts[c.b].pose;
+            away.translation = away.translation - c.separation->distance * c.separation->normal;
+            EXPECT_FALSE(intersects(*shape(c.a), parts[c.a].pose, *shape(c.b), away)) << name;
+        }
+        EXPECT_EQ(parted, least.size());
+    }
+}
+
 TEST(Clash, PairsAreChosen) {
     std::vector<AssemblyPart> parts;
     for (int i = 0; i < 6; ++i)
@@ -289,12 +363,79 @@ TEST(Clash, PairsAreChosen) {
     EXPECT_EQ(pairs({.against = {"folder/*", "part 3"}}), (Pairs{{1, 2}, {3, 4}})) << "not within";
     EXPECT_EQ(pairs({.exclude = {{"part 1", "part ?"}, {"*5", "part 4"}}}), (Pairs{{2, 3}, {3, 4}}));
     EXPECT_EQ(pairs({.exclude_parent_child = true}), (Pairs{{0, 1}, {1, 2}, {2, 3}, {4, 5}}));
+    // Paths, and what ends them; a node's name alone is none.
+    parts[0].under = {"Building", "Floor 2"};
+    parts[1].under = {"Building", "Floor 2", "Pipes"};
+    parts[3].under = {"Building", "Floor 12"};
+    EXPECT_EQ(path_of(parts[1]), "Building/Floor 2/Pipes/part 1");
+    EXPECT_EQ(path_of(parts[5]), "part 5");
+    EXPECT_EQ(pairs({.against = {"Floor 2/*"}}), (Pairs{{1, 2}}));
+    EXPECT_EQ(pairs({.against = {"Building/*"}}), (Pairs{{1, 2}, {2, 3}, {3, 4}}));
+    EXPECT_EQ(pairs({.against = {"Floor*/part 0", "Floor 12/part 3"}}), (Pairs{{0, 1}, {2, 3}, {3, 4}}));
+    EXPECT_EQ(pairs({.exclude = {{"Floor 2/*", "Pipes/*"}}}), (Pairs{{1, 2}, {2, 3}, {3, 4}, {4, 5}}));
     for (const ClashOptions& options :
-         {ClashOptions{.against = {"part 9"}}, ClashOptions{.against = {"*9"}}, ClashOptions{.against = {"*"}},
+         {ClashOptions{.against = {"Floor 2"}}, ClashOptions{.against = {"loor 2/*"}},
+          ClashOptions{.against = {"part 9"}}, ClashOptions{.against = {"*9"}}, ClashOptions{.against = {"*"}},
           ClashOptions{.exclude = {{"part 1", "parts"}}}, ClashOptions{.clearance = -1},
           ClashOptions{.tolerance = std::nan("")}, ClashOptions{.threads = 5000}})
         EXPECT_THROW(find_clashes(parts, options), InputError);
     EXPECT_THROW(find_clashes(std::span(parts).first(1)), InputError);
+}
+
+TEST(Clash, GroupsAreOfOnePartOrOfTwoAssemblies) {
+    // A flange with four bolts, two of which meet a pipe, which meets a wall.
+    std::vector<AssemblyPart> parts{box("pipe", {0, 0, 0}, {1, 1, 1}), box("flange", {4, 0, 0}, {8, 1, 1}),
+                                    box("wall", {-1, 0, 0}, {0.2, 1, 1})};
+    for (int i = 0; i < 4; ++i)
+        parts.push_back(
+            box("bolt " + std::to_string(i), {i < 2 ? 0.9 : 3 + i, 0.2 * i, 0.2}, {4.01 + i, 0.2 * i + 0.1, 2}));
+    for (std::size_t i = 3; i < 7; ++i) parts[i].under = {"hall", "joint", "bolts"};
+    parts[1].under = {"hall", "joint"};
+    parts[0].under = {"hall"};
+    const std::vector<Clash> clashes = clashes_of(parts);
+    ASSERT_EQ(clashes.size(), 7u);
+    const auto members = [&](const ClashGroup& group) {
+        std::set<std::set<std::string>> found;
+        for (const std::size_t i : group.clashes) {
+            found.insert({parts[clashes[i].a].name, parts[clashes[i].b].name});
+            const AxisBox box = clashes[i].box.value();
+            EXPECT_EQ(least(group.box.low, box.low), group.box.low);
+            EXPECT_EQ(most(group.box.high, box.high), group.box.high);
+        }
+        EXPECT_TRUE(std::ranges::is_sorted(group.clashes));
+        return found;
+    };
+    const auto named = [&](const std::vector<ClashGroup>& groups) {
+        std::map<std::pair<std::string, std::string>, std::size_t> found;
+        std::size_t all = 0;
+        for (std::size_t i = 0; i < groups.size(); ++i) {
+            found[{groups[i].a, groups[i].b}] = members(groups[i]).size();
+            all += groups[i].clashes.size();
+            if (i > 0) {
+                EXPECT_LT(groups[i - 1].clashes[0], groups[i].clashes[0]);
+            }
+        }
+        EXPECT_EQ(all, clashes.size()) << "each once";
+        return found;
+    };
+    using Groups = std::map<std::pair<std::string, std::string>, std::size_t>;
+    EXPECT_EQ(named(group_by_part(parts, clashes)), (Groups{{{"hall/joint/flange", ""}, 4}, {{"hall/pipe", ""}, 3}}));
+    EXPECT_EQ(
+        named(group_by_assembly(parts, clashes)),
+        (Groups{{{"hall/joint", "hall/joint/bolts"}, 4}, {{"hall", "hall/joint/bolts"}, 2}, {{"hall", "wall"}, 1}}));
+    EXPECT_EQ(named(group_by_assembly(parts, clashes, 1)), (Groups{{{"hall", "hall"}, 6}, {{"hall", "wall"}, 1}}));
+    EXPECT_EQ(
+        named(group_by_assembly(parts, clashes, 2)),
+        (Groups{{{"hall/joint", "hall/joint"}, 4}, {{"hall/joint", "hall/pipe"}, 2}, {{"hall/pipe", "wall"}, 1}}));
+    // Of some of them; the last one of two parts names both.
+    const std::vector<Clash> one{clashes[0]};
+    const auto alone = group_by_part(parts, one);
+    ASSERT_EQ(alone.size(), 1u);
+    EXPECT_EQ(alone[0].a, path_of(parts[one[0].a]));
+    EXPECT_EQ(alone[0].b, path_of(parts[one[0].b]));
+    EXPECT_TRUE(group_by_part(parts, {}).empty());
+    EXPECT_THROW(group_by_part(std::span(parts).first(2), clashes), InputError);
+    EXPECT_THROW(group_by_assembly(std::span(parts).first(2), clashes), InputError);
 }
 
 TEST(Clash, ProgressIsToldAndASearchCanBeStopped) {
@@ -354,6 +495,13 @@ TEST(ClashOnAPath, FindsWhatMovingPartsMeetAndHowNearTheyCome) {
         ASSERT_FALSE(within.clashes.empty());
         EXPECT_FALSE(within.clashes[0].meet);
         EXPECT_NEAR(within.clashes[0].place.distance, back.nearest->place.distance, 1e-3);
+        // A clearance of others does not count, one of these two does.
+        near.clearance = 0;
+        near.clearances = {{100, {"door", "handle"}}, {100, {"*wall", "door"}}};
+        const PathClashReport some = find_path_clashes(parts, {"door", "handle"}, turns(off, 0, -1.0), near);
+        ASSERT_EQ(some.clashes.size(), 2u);
+        for (const PathClash& clash : some.clashes) EXPECT_TRUE(parts[clash.other].name.ends_with("wall"));
+        EXPECT_EQ(parts[some.nearest->other].name, "post");
         // What is left out is not asked.
         ClashOptions without;
         without.exclude = {{"door", "wall"}};

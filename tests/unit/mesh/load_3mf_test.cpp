@@ -113,6 +113,8 @@ TEST(Load3mf, ItemsAndComponentsPlaceObjectsInOrder) {
     ASSERT_EQ(parts.size(), 3u);
     EXPECT_EQ(parts[0].name, "cube");
     EXPECT_EQ(parts[1].name, "object 2");
+    EXPECT_EQ(path_of(parts[1]), "object 4/object 3/object 2");
+    EXPECT_EQ(path_of(parts[2]), "cube");
     EXPECT_EQ(parts[0].mesh, parts[2].mesh);
     EXPECT_EQ(parts[0].mesh->vertices, box().vertices);
     EXPECT_EQ(transform_point(parts[0].pose, {1, 0, 0}), (Vec3{0, 3, 5}));

@@ -250,6 +250,30 @@ TEST(LoadGltf, JointsPlaceASkinnedMesh) {
     expect_near(load_mesh(folder.write("m.glb", file.glb())).vertices, {{0, 0, 0}, {0.01, 3, 0}, {0, 1.51, 0}});
 }
 
+TEST(LoadGltf, PartsKnowWhatTheyAreUnder) {
+    const TempFolder folder;
+    const auto under = [&](const std::string& nodes) {
+        folder.write("m.bin", gltf_buffer(quad()));
+        std::vector<std::vector<std::string>> found;
+        for (const AssemblyPart& part : load_assembly(folder.write("m.gltf", gltf_json(quad(), nodes, "m.bin"))))
+            found.push_back(part.under);
+        return found;
+    };
+    using Under = std::vector<std::vector<std::string>>;
+    EXPECT_EQ(under(R"([{"name":"hall","children":[1]},{"mesh":0,"children":[2]},{"mesh":0,"name":"lid"}])"),
+              (Under{{"hall"}, {"hall", "nodes[1]"}}));
+    // A chain of long names: the nearest, as far as a thousand bytes reach.
+    std::string chain;
+    for (int i = 0; i < 50; ++i)
+        chain += R"({"name":")" + std::to_string(i) + std::string(98, 'x') + R"(","children":[)" + std::to_string(i + 1)
+                 + "]},";
+    const Under deep = under("[" + chain + R"({"mesh":0}])");
+    ASSERT_EQ(deep.size(), 1u);
+    EXPECT_EQ(deep[0].size(), 10u);
+    EXPECT_TRUE(deep[0].front().starts_with("40x")) << deep[0].front();
+    EXPECT_TRUE(deep[0].back().starts_with("49x")) << deep[0].back();
+}
+
 TEST(LoadGltf, ASkinnedMeshUnderAScaledArmatureHasItsBindSize) {
     const TempFolder folder;
     Skinned file;
