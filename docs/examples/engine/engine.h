@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <fstream>
 #include <map>
 #include <string>
 #include <tuple>
@@ -104,8 +105,10 @@ public:
     raycontact::Scene scene;
     std::vector<Body> bodies;
 
-    Heap(const std::string& file, const raycontact::Settings& settings) : scene(settings), bodies(51) {
-        raycontact::Mesh mesh = raycontact::load_mesh(file);
+    /// Arguments of the program: a mesh file, then a file for the poses at the end.
+    Heap(int argc, char** argv, const raycontact::Settings& settings)
+        : scene(settings), bodies(51), poses_file_(argc > 2 ? argv[2] : "") {
+        raycontact::Mesh mesh = raycontact::load_mesh(argc > 1 ? argv[1] : "samples/hare.obj");
         const raycontact::Mass mass = raycontact::mass_of(mesh.vertices, mesh.triangles);
         for (Vec3& v : mesh.vertices) v = v - mass.centre;
         const auto shape = raycontact::Shape::make(mesh);
@@ -145,6 +148,7 @@ public:
     /// Prints what was seen in the last second. 0, the exit status of success, if no point moved by more than a
     /// thousandth of a hare, and no contact is deeper than the limit, metres.
     int verdict(double deepest_allowed) const {
+        if (!poses_file_.empty()) write_poses();
         double fastest = 0;
         for (const Body& body : bodies)
             fastest = std::max(fastest, length(body.velocity) + radius_ * length(body.spin));
@@ -155,6 +159,17 @@ public:
     }
 
 private:
+    /// A line for each hare: its rotation, row by row, and its place.
+    void write_poses() const {
+        std::ofstream out(poses_file_);
+        for (std::size_t i = 1; i < bodies.size(); ++i) {
+            const Pose& pose = bodies[i].pose;
+            for (const double entry : pose.rotation) out << entry << ' ';
+            out << pose.translation.x << ' ' << pose.translation.y << ' ' << pose.translation.z << '\n';
+        }
+    }
+
+    std::string poses_file_;
     double radius_ = 0, moved_ = 0, deepest_ = 0; // metres
     std::vector<Body> began_;                     // as they were when the last second began
 };

@@ -2,7 +2,7 @@
 // Sequential impulses (Catto, Iterative Dynamics with Temporal Coherence, 2005; Fast and Simple Physics using
 // Sequential Impulses, GDC 2006): each contact in turn gets the impulse that it needs, round after round; each step
 // begins with the impulses of the last one.
-//   engine_impulses [MESH]
+//   engine_sequential_impulses [MESH [POSES]]
 #include "engine.h"
 
 #include <exception>
@@ -57,7 +57,7 @@ int main(int argc, char** argv) try {
     raycontact::Settings settings;
     settings.speculative = true;        // contacts before anything touches
     settings.max_contacts_per_pair = 8; // those that stand for all
-    engine::Heap heap(argc > 1 ? argv[1] : "samples/hare.obj", settings);
+    engine::Heap heap(argc, argv, settings);
     engine::Kept<Vec3> impulses;
 
     for (int step = 1; step * dt <= engine::seconds; ++step) {

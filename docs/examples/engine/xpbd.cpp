@@ -3,7 +3,7 @@
 // Body Simulation with Extended Position Based Dynamics, 2020): bodies go on as if nothing were there, contacts move
 // them back, and velocities are what came of it. Contacts are held a little apart: what rests has speculative ones
 // alone.
-//   engine_xpbd [MESH]
+//   engine_xpbd [MESH [POSES]]
 #include "engine.h"
 
 #include <exception>
@@ -78,7 +78,7 @@ int main(int argc, char** argv) try {
     settings.speculative = true;
     settings.speculative_margin = 2 * rest_offset;
     settings.max_contacts_per_pair = 8;
-    engine::Heap heap(argc > 1 ? argv[1] : "samples/hare.obj", settings);
+    engine::Heap heap(argc, argv, settings);
     engine::Kept<Push> pushes;
 
     for (int step = 1; step * dt <= engine::seconds; ++step) {
