@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace raycontact {
 
@@ -154,20 +155,43 @@ std::vector<BodyId> Scene::overlaps(const Shape& other, const Pose& place, const
     return found;
 }
 
+// A body far along the way costs as much as a near one. So bodies are asked in the order of the times at which their
+// boxes are met: those of the start, which may end the search, then those of longer and longer parts of the way.
 std::optional<BodyImpact> Scene::sweep(const Shape& other, const RigidMotion& motion, double distance,
                                        const Wanted& wanted) const {
     const FloatEnvironment environment;
     const Sweep sweep(other, motion, distance);
     Nearest<BodyImpact, &Impact::time> nearest(1);
-    visit_near(
-        [&](const Vec3& low, const Vec3& high) {
-            return sweep.earliest({low, high});
-        },
-        [&] { return nearest.farthest(); },
-        [&](BodyId body) {
-            if (wanted && !wanted(body)) return;
-            nearest.add(body, sweep.impact(shape(body), pose(body), nearest.farthest()));
-        });
+    std::vector<std::pair<double, BodyId>> due;
+    const auto list_due = [&](double after, double until) {
+        due.clear();
+        visit_near(
+            [&](const Vec3& low, const Vec3& high) {
+                return sweep.earliest({low, high});
+            },
+            [&] { return until; },
+            [&](BodyId body) {
+                const double begin = sweep.earliest(box_around(shape(body), pose(body)));
+                if (begin > after && begin <= until && (!wanted || wanted(body))) due.emplace_back(begin, body);
+            });
+        std::ranges::sort(due);
+    };
+    const auto go = [&] {
+        for (const auto& [begin, body] : due)
+            nearest.add(body, sweep.on_the_way(shape(body), pose(body), begin, nearest.farthest()));
+    };
+    list_due(-1, 0);
+    for (const auto& [begin, body] : due) { // by slot
+        nearest.add(body, sweep.at_start(shape(body), pose(body)));
+        if (nearest.found()) return nearest.found();
+    }
+    go();
+    for (double after = 0; after < nearest.farthest();) {
+        const double until = std::min(std::max(4 * after, 1.0 / 16), nearest.farthest());
+        list_due(after, until);
+        go();
+        after = until;
+    }
     return nearest.found();
 }
 
@@ -183,7 +207,10 @@ std::vector<BodyImpact> Scene::sweep_all(const Shape& other, const RigidMotion& 
         [] { return 1.0; },
         [&](BodyId body) {
             if (wanted && !wanted(body)) return;
-            if (const auto impact = sweep.impact(shape(body), pose(body), 1)) found.push_back({*impact, body});
+            const double begin = sweep.earliest(box_around(shape(body), pose(body)));
+            auto impact = begin <= 0 ? sweep.at_start(shape(body), pose(body)) : std::nullopt;
+            if (!impact) impact = sweep.on_the_way(shape(body), pose(body), begin, 1);
+            if (impact) found.push_back({*impact, body});
         });
     std::ranges::sort(found, [](const BodyImpact& a, const BodyImpact& b) {
         return a.time < b.time || (a.time == b.time && a.body < b.body);

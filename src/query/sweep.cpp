@@ -67,13 +67,14 @@ double Sweep::earliest(const Box& box) const {
     return infinite;
 }
 
-std::optional<Impact> Sweep::impact(const Shape& body, const Pose& pose, double latest) const {
-    const double begin = earliest(box_around(body, pose));
+std::optional<Impact> Sweep::at_start(const Shape& body, const Pose& pose) const {
+    return impact_at_start(shape_, start_, body, pose, checked_nearness(shape_, body, distance_, 0));
+}
+
+std::optional<Impact> Sweep::on_the_way(const Shape& body, const Pose& pose, double begin, double latest) const {
     if (begin > latest) return std::nullopt;
-    const Nearness near = checked_nearness(shape_, body, distance_, 0);
-    if (begin <= 0)
-        if (const auto impact = impact_at_start(shape_, start_, body, pose, near)) return impact;
-    return impact_on_the_way(shape_, motion_, body, no_motion(pose), near, begin, latest);
+    return impact_on_the_way(shape_, motion_, body, no_motion(pose), checked_nearness(shape_, body, distance_, 0),
+                             begin, latest);
 }
 
 } // namespace raycontact

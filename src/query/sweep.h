@@ -23,8 +23,10 @@ public:
 
     /// No later than anything in a box is met; infinite: never.
     double earliest(const Box& box) const;
-    /// With a body, no later than `latest`.
-    std::optional<Impact> impact(const Shape& body, const Pose& pose, double latest) const;
+    /// With a body, at time 0.
+    std::optional<Impact> at_start(const Shape& body, const Pose& pose) const;
+    /// After that, no earlier than `begin` and no later than `latest`.
+    std::optional<Impact> on_the_way(const Shape& body, const Pose& pose, double begin, double latest) const;
 
 private:
     /// A part of the motion, in which a box that moves straight holds the mesh.
