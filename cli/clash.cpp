@@ -469,9 +469,12 @@ void add_clash(CLI::App& app) {
                        ? std::string()
                        : "\"" + word + "\" is no group; give part, assembly or a number from 1 on";
         });
-    command->add_flag("--tree", options->tree, "print the parts and the nodes that they are under, and search nothing");
+    auto* const tree = command->add_flag("--tree", options->tree,
+                                         "print the parts and the nodes that they are under, and search nothing");
     command->add_flag("--json", options->json, "print one JSON line a clash on stdout");
     command->add_flag("--check", options->check, "exit status 3 where parts clash");
+    for (const char* other : {"--along", "--range", "--group", "--out", "--csv", "--bcf", "--check"})
+        tree->excludes(command->get_option(other));
     command->footer(
         "A clash has the depth of its deepest contact and that contact's point, which is in both parts. Parts touch\n"
         "if they share a point and nothing more. Where one of the parts is open, intersects itself or winds the wrong\n"

@@ -33,7 +33,7 @@ enum class ClashKind {
     piercing,
     inside,    ///< one lies in the other: no point of it is outside
     duplicate, ///< the same part in the same place, to 1e-6 of its size
-    nearby,    ///< "near": they share no point, and are not farther apart than ClashOptions::clearance
+    nearby,    ///< "near": they share no point, and are not farther apart than the clearance of the two
 };
 /// "touching", ...: as the program prints it.
 RAYCONTACT_API const char* to_string(ClashKind kind);

@@ -98,6 +98,7 @@ std::vector<ClashGroup> group_by_assembly(std::span<const AssemblyPart> parts, s
         found[std::move(names)].push_back(i);
     }
     std::vector<ClashGroup> groups;
+    groups.reserve(found.size());
     for (auto& [names, numbers] : found)
         groups.push_back(group_of(names.first, names.second, std::move(numbers), clashes));
     return in_order(std::move(groups));

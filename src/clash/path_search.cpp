@@ -115,16 +115,8 @@ private:
     std::optional<PathClash> ask(const PartPair& pair, double max) const {
         const Part &a = parts_[pair.a], &b = parts_[pair.b];
         if (!a.shape || !b.shape) return std::nullopt;
-        const std::span path(paths_[pair.a]), stays(&b.pose, 1);
-        if (const auto met = time_of_impact(*a.shape, path, *b.shape, stays))
-            return PathClash{
-                pair.a,
-                pair.b,
-                true,
-                {{met->distance, met->point_a, met->point_b, met->triangle_a, met->triangle_b}, met->time}};
-        if (!(max > 0)) return std::nullopt;
-        const auto place = path_clearance(*a.shape, path, *b.shape, stays, max);
-        return place ? std::optional(PathClash{pair.a, pair.b, false, *place}) : std::nullopt;
+        const auto place = path_clearance(*a.shape, paths_[pair.a], *b.shape, std::span(&b.pose, 1), max);
+        return place ? std::optional(PathClash{pair.a, pair.b, place->meet, *place}) : std::nullopt;
     }
 
     const ClashOptions& options_;

@@ -455,6 +455,7 @@ TEST_F(Clash, PartsUnderOtherParts) {
                                                 "  flange  (12 triangles)\n"
                                                 "  group/\n"
                                                 "    bolt  (12 triangles)\n");
+    expect_refused(run({"tree.gltf", "--tree", "--check"}), "--tree");
     write_cube("post.obj", 1.8);
     EXPECT_EQ(run({"tree.gltf", "post.obj", "--tree"}).out, "tree.gltf/\n"
                                                             "  pump  (12 triangles)\n"
