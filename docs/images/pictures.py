@@ -30,7 +30,9 @@ def draw(name: str, bodies: list, eye, at) -> None:
     for shape, pose, _ in bodies:
         scene.add(shape, pose)
     picture.COLOURS = np.array([colour for _, _, colour in bodies])
-    picture.save(str(HERE / name), picture.draw(scene, np.array(eye, float), np.array(at, float), np.arange(len(bodies))))
+    picture.save(
+        str(HERE / name), picture.draw(scene, np.array(eye, float), np.array(at, float), np.arange(len(bodies)))
+    )
 
 
 def heap(mesh_file: str, poses_file: str) -> None:
