@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Each shell line of README and docs/program.md as it stands, one after another in a folder of its own.
+// Each shell line of README and two pages of docs as it stands, one after another in a folder of its own.
 #include "program.h"
 
 #include <gtest/gtest.h>
@@ -49,7 +49,8 @@ TEST(Readme, EachShellLineRuns) {
     const bool all = std::getenv("RAYCONTACT_MINUTES") != nullptr;
     std::size_t ran = 0;
     std::vector<std::string> all_lines = shell_lines(source / "README.md");
-    std::ranges::copy(shell_lines(source / "docs/program.md"), std::back_inserter(all_lines));
+    for (const char* page : {"docs/program.md", "docs/assembly-motion.md"})
+        std::ranges::copy(shell_lines(source / page), std::back_inserter(all_lines));
     for (std::string line : all_lines) {
 #ifdef RAYCONTACT_WITH_BENCH
         if (constexpr std::string_view script = "scripts/bench "; line.starts_with(script))
@@ -62,7 +63,7 @@ TEST(Readme, EachShellLineRuns) {
         EXPECT_EQ(result.status, 0) << line << '\n' << result.err;
         ++ran;
     }
-    EXPECT_GE(ran, 16u);
+    EXPECT_GE(ran, 20u);
 }
 
 } // namespace

@@ -110,12 +110,14 @@ public:
         : scene(settings), bodies(51), poses_file_(argc > 2 ? argv[2] : "") {
         raycontact::Mesh mesh = raycontact::load_mesh(argc > 1 ? argv[1] : "samples/hare.obj");
         const raycontact::Mass mass = raycontact::mass_of(mesh.vertices, mesh.triangles);
+        if (!(mass.volume > 0))
+            throw raycontact::InputError(mesh.name + ": encloses no volume; give a closed mesh, wound outward");
         for (Vec3& v : mesh.vertices) v = v - mass.centre;
         const auto shape = raycontact::Shape::make(mesh);
         radius_ = shape->radius();
         const auto& m = mass.inertia;
         const Vec3 x{m[0], m[1], m[2]}, y{m[3], m[4], m[5]}, z{m[6], m[7], m[8]};
-        const double density = 1000, determinant = density * dot(x, cross(y, z));
+        const double density = 1000, determinant = density * dot(x, cross(y, z)); // kg/m^3; for the inverse
         bodies[0].id = scene.add(raycontact::Shape::make(bin(6.2 * radius_, 5 * radius_, 0.3 * radius_)));
         for (std::size_t i = 1; i < bodies.size(); ++i) {
             Body& body = bodies[i];

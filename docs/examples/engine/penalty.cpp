@@ -3,7 +3,7 @@
 // (Cundall and Strack, A Discrete Numerical Model for Granular Assemblies, 1979). Each vertex inside another body
 // pushes by its share of the surface (direction `weighted`; Hermann et al. 2008): its force begins at 0 and does not
 // jump.
-//   engine_penalty [MESH [POSES]]
+//   example_penalty [MESH [POSES]]
 #include "engine.h"
 
 #include <exception>

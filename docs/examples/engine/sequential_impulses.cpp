@@ -2,7 +2,7 @@
 // Sequential impulses (Catto, Iterative Dynamics with Temporal Coherence, 2005; Fast and Simple Physics using
 // Sequential Impulses, GDC 2006): each contact in turn gets the impulse that it needs, round after round; each step
 // begins with the impulses of the last one.
-//   engine_sequential_impulses [MESH [POSES]]
+//   example_sequential_impulses [MESH [POSES]]
 #include "engine.h"
 
 #include <exception>

@@ -3,7 +3,7 @@
 // Body Simulation with Extended Position Based Dynamics, 2020): bodies go on as if nothing were there, contacts move
 // them back, and velocities are what came of it. Contacts are held a little apart: what rests has speculative ones
 // alone.
-//   engine_xpbd [MESH [POSES]]
+//   example_xpbd [MESH [POSES]]
 #include "engine.h"
 
 #include <exception>
