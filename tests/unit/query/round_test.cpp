@@ -323,6 +323,7 @@ TEST(RoundQueries, DistancesOfRoundBodiesAndMeshes) {
         box_mesh({0.7, 0.35, 1.1}), l_prism_mesh(),   frame_mesh(),  bumpy_octahedron_mesh(4),
         tetrahedron_mesh(),         open_box_mesh(2), sheet_mesh(3), box_mesh({2, 1e-5, 2})};
     std::vector<ShapePtr> shapes;
+    shapes.reserve(meshes.size());
     for (const Mesh& mesh : meshes) shapes.push_back(Shape::make(mesh));
     int inside = 0, meet = 0, pierce = 0;
     for (int i = 0; i < 4000; ++i) {
