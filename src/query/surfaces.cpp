@@ -111,7 +111,8 @@ public:
     /// limit: only what is nearer counts, m^2.
     Closest(const ShapePair& pair, double limit)
         : pair_(pair), grow_a_(rounding_of(pair.a()) + float_rounding_of(pair)),
-          grow_b_(rounding_of(pair.b().shape()) + float_rounding_of(pair)), squared_(limit) {
+          grow_b_(rounding_of(pair.b().shape()) + float_rounding_of(pair)), squared_(limit),
+          is_round_(pair.radius() > 0) {
         go({});
     }
 
@@ -208,7 +209,7 @@ private:
         Span span{squared_, {}, {}};
         const Face other(pair_.corners_of_b(b));
         shorten_between(span, face, other);
-        if (pair_.radius() > 0) { // cores cross faces where bodies meet
+        if (is_round_) { // cores cross faces where bodies meet
             if (const auto point = crossing_of(face, other)) span.shorten(*point, *point);
             if (const auto point = crossing_of(other, face)) span.shorten(*point, *point);
         }
@@ -228,6 +229,7 @@ private:
 
     const ShapePair& pair_;
     double grow_a_, grow_b_, squared_;
+    bool is_round_; ///< one of the bodies
     std::optional<TrianglePair> found_;
     /// The way from a to b in the centred frame of a, the way back in that of b, and how far the first is behind the
     /// second, metres.

@@ -32,6 +32,7 @@ std::vector<Found> contacts(const std::shared_ptr<const Shape>& mesh, const btCo
     std::vector<RoundContact> rounds;
     round_contacts(bullet::round_of(shape), bullet::to_pose(pose), {}, obstacles, reach, rounds);
     std::vector<Found> found;
+    found.reserve(rounds.size());
     for (const RoundContact& c : rounds)
         found.push_back({bullet::to_bullet(c.point), bullet::to_bullet(c.normal), btScalar(c.distance)});
     return found;

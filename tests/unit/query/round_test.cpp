@@ -304,7 +304,14 @@ TEST(RoundQueries, DistancesOfRoundBodies) {
         meet += metres < 0 ? 1 : 0;
     }
     EXPECT_GT(meet, 300);
-    const ShapePtr ball = make_ball(0.5);
+    // Side by side, end to end, and far from the origin.
+    const ShapePtr rod = make_capsule(0.25, 1), ball = make_ball(0.5);
+    EXPECT_NEAR(distance(*rod, {}, *rod, at({0.6, 0.8, 0.7}))->distance, 0.5, 1e-15);
+    EXPECT_NEAR(distance(*rod, {}, *rod, at({0, 0, 3}))->distance, 0.5, 1e-15);
+    const Vec3 far{1 << 20, -(1 << 21), 1 << 22};
+    EXPECT_NEAR(distance(*rod, at(far), *ball, at(far + Vec3{0, 3, 5}))->distance, 4.25, 1e-14);
+    EXPECT_NEAR(closest_point(*ball, at(far), far + Vec3{0, 3, 4})->distance, 4.5, 1e-14);
+    EXPECT_NEAR(raycast(*ball, at(far), far + Vec3{0, 3, 4}, {0, -3, -4})->distance, 4.5, 1e-14);
     EXPECT_EQ(distance(*ball, {}, *ball, at({0, 3, 4}))->distance, 4);
     EXPECT_TRUE(intersects(*ball, {}, *ball, at({1, 0, 0})));
     EXPECT_FALSE(intersects(*ball, {}, *ball, at({1 + 1e-15, 0, 0})));
@@ -316,6 +323,7 @@ TEST(RoundQueries, DistancesOfRoundBodiesAndMeshes) {
         box_mesh({0.7, 0.35, 1.1}), l_prism_mesh(),   frame_mesh(),  bumpy_octahedron_mesh(4),
         tetrahedron_mesh(),         open_box_mesh(2), sheet_mesh(3), box_mesh({2, 1e-5, 2})};
     std::vector<ShapePtr> shapes;
+    shapes.reserve(meshes.size());
     for (const Mesh& mesh : meshes) shapes.push_back(Shape::make(mesh));
     int inside = 0, meet = 0, pierce = 0;
     for (int i = 0; i < 4000; ++i) {
@@ -431,6 +439,26 @@ TEST(RoundQueries, ClearanceOnTheWay) {
     EXPECT_NEAR(least->time, 0.5, 1e-4);
     EXPECT_NEAR(path_clearance(*box, no_motion({}), *small, past, any_distance, 1e-9)->distance, 0.9, 1e-9);
     EXPECT_FALSE(path_clearance(*small, past, *ball, no_motion({}), 1.3));
+
+    Random random(8);
+    const std::vector<ShapePtr> meshes{Shape::make(frame_mesh()), Shape::make(bumpy_octahedron_mesh(3)),
+                                       Shape::make(sheet_mesh(3)), make_ball(0.3)};
+    int met = 0, clear = 0;
+    for (int i = 0; i < 60; ++i) {
+        const Shape &a = *round_shapes()[i % 5], &b = *meshes[i % 4];
+        const RigidMotion motion_a = any_motion(random, 2), motion_b = any_motion(random, 2);
+        const auto found = path_clearance(a, motion_a, b, motion_b, any_distance, 1e-4);
+        ASSERT_TRUE(found) << i;
+        (found->distance > 0 ? clear : met) += 1;
+        const auto apart_at = [&](double time) {
+            return distance(a, pose_at(motion_a, time), b, pose_at(motion_b, time))->distance;
+        };
+        ASSERT_NEAR(apart_at(found->time), found->distance, 1e-6) << i;
+        for (int k = 0; k <= 300 && found->distance > 1e-4; ++k)
+            ASSERT_GE(apart_at(k / 300.0), found->distance - 1e-4) << i;
+    }
+    EXPECT_GT(met, 5);
+    EXPECT_GT(clear, 10);
 }
 
 TEST(RoundQueries, SeparationPartsThem) {
