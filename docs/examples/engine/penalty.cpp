@@ -14,7 +14,7 @@ using engine::Body, raycontact::Vec3;
 
 constexpr double dt = 1.0 / 4000;
 // By area, as forces are: N/m^3 and N s/m^3.
-constexpr double stiffness = 1e8, damping = 4e5;
+constexpr double stiffness = 1e8, damping = 1e6;
 
 /// How far friction's spring is drawn out, metres, across the normal: of b against a. Without it friction would need
 /// speed, and what rests on a slope would creep.
