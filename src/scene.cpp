@@ -284,7 +284,8 @@ struct Scene::State {
 
     void update_touches() {
         const auto is_kept_apart = [&](const SlotPair& pair) {
-            return !finder.filter(pair.first).lets_touch(finder.filter(pair.second)) || pairs.is_refused(pair);
+            const bool meet = finder.filter(pair.first).lets_touch(finder.filter(pair.second));
+            return !given_stand && (!meet || pairs.is_refused(pair));
         };
         touches.update(narrow.parts().executor(),
                        {bodies, next, moved, narrow.contacts(), narrow.sensed(), narrow.asked(pairs), is_kept_apart});

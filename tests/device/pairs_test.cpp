@@ -169,7 +169,7 @@ std::size_t run(const std::string& device, std::uint32_t count, const Place& pla
         for (BodySlot i = 0; i < bodies.size(); ++i)
             if (step % 3 == 0 || (step % 3 == 1 && i % 50 == 0)) bodies.move(i, pose_at(random, place(i + 7 * step)));
         if (step == 3)
-            for (BodySlot i = 0; i < bodies.size(); i += 3) bodies.filter(i, {1u << (i % 2), 1u + i % 3});
+            for (BodySlot i = 0; i < bodies.size(); i += 3) bodies.filter(i, {1u << (i % 2), 1u + i % 3, i % 4 == 0});
         if (step == 4)
             for (BodySlot i = 0; i < bodies.size(); i += 5) bodies.remove(i);
         if (step == 5)
@@ -202,7 +202,12 @@ TEST_P(Devices, make_the_hosts_boxes) {
             const Box own{corner, corner + size};
             const double growth = slot % 2 == 0 ? 0 : random.uniform(0, 0.1);
             const Vec3 middle = own.middle(), half = 0.5 * (own.high - own.low) + Vec3{growth, growth, growth};
-            extents.push_back({{middle.x, middle.y, middle.z}, {half.x, half.y, half.z}, slot, 3, 1, slot});
+            extents.push_back({{middle.x, middle.y, middle.z},
+                               {half.x, half.y, half.z},
+                               slot,
+                               3,
+                               slot % 3 == 0 ? IS_THERE | IS_STATIC : IS_THERE,
+                               slot});
             Box box = no_box;
             for (std::size_t k = 0; k < places; ++k) {
                 const Pose pose = slot % 7 == 0 ? Pose{} : pose_at(random, scale * random.in_ball());
@@ -224,12 +229,13 @@ TEST_P(Devices, make_the_hosts_boxes) {
         std::vector<kernels::WorldBox> found(extents.size());
         boxes.read(device, found);
         for (BodySlot slot = 0; slot < found.size(); ++slot) {
-            const auto& [low, high, groups, mask] = found[slot];
+            const auto& [low, high, groups, mask, moves, unused] = found[slot];
             ASSERT_EQ(bits_of({low[0], low[1], low[2]}, {high[0], high[1], high[2]}),
                       bits_of(expected[slot].low, expected[slot].high))
                 << slot;
             ASSERT_EQ(groups, slot);
             ASSERT_EQ(mask, 3u);
+            ASSERT_EQ(moves, slot % 3 == 0 ? 0u : 1u);
         }
     }
 }
