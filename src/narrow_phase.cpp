@@ -56,6 +56,7 @@ void NarrowPhase::set_settings(const Settings& settings) {
     settings_ = settings;
     parts_.forget();
     seen_ = 0;
+    forget_loaded();
 }
 
 std::string NarrowPhase::device_choice() const {
@@ -82,7 +83,7 @@ void NarrowPhase::forget_contacts() noexcept {
     left_out_.clear();
     sensed_.clear();
     seen_ = 0;
-    is_loaded_ = false;
+    forget_loaded();
 }
 
 // Where most bodies move, hardly a pair has what it had. A number of contacts that all pairs share is given to all
@@ -137,7 +138,7 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, const SlotChanges& mo
             left_out_.replace(executor, asked, reducer_.left_out());
         if (!sensed_.all().empty() || !of_sensors_.empty()) sensed_.replace(executor, asked, of_sensors_);
         seen_ = moved.now();
-        is_loaded_ = false;
+        forget_loaded();
     } catch (...) {
         const Interruptible to_its_end(nullptr);
         begin_anew();
@@ -288,14 +289,16 @@ bool NarrowPhase::move_pairs(const Balance::Move& move, std::span<const PlacedBo
     return failed.empty() && moving.size() > 0;
 }
 
-SavedContacts NarrowPhase::save_contacts() const {
+SavedContacts NarrowPhase::save_contacts(const SlotChanges& moved) const {
     const auto copy_of = [](std::span<const Contact> contacts) {
         return std::vector<Contact>(contacts.begin(), contacts.end());
     };
-    return {copy_of(contacts_.all()), copy_of(left_out_.all()), copy_of(sensed_.all())};
+    return {copy_of(contacts_.all()), copy_of(left_out_.all()), copy_of(sensed_.all()),
+            moved.is_next(seen_) || is_loaded_};
 }
 
 std::vector<SavedRays> NarrowPhase::save_rays(std::span<const PlacedBody> bodies) {
+    if (!loaded_rays_.empty()) return loaded_rays_;
     std::vector<SavedRays> saved;
     for (std::size_t i = 0; i < parts_.size(); ++i) {
         if (!has_pairs(i)) continue;
@@ -307,7 +310,7 @@ std::vector<SavedRays> NarrowPhase::save_rays(std::span<const PlacedBody> bodies
 }
 
 // All pairs begin on one part, since any has taken over rays from any other.
-void NarrowPhase::load(std::span<const PlacedBody> bodies, const SlotChanges& moved, const OpenPairs& pairs,
+void NarrowPhase::load(std::span<const PlacedBody> bodies, const SlotChanges& moved, OpenPairs& pairs,
                        SavedContacts contacts, std::span<const SavedRays> rays) {
     Executor& executor = parts_.executor();
     parts_.forget();
@@ -316,7 +319,8 @@ void NarrowPhase::load(std::span<const PlacedBody> bodies, const SlotChanges& mo
     left_out_.restore(executor, std::move(contacts.left_out));
     sensed_.restore(executor, std::move(contacts.sensed));
     seen_ = 0;
-    is_loaded_ = true;
+    is_loaded_ = contacts.were_chosen;
+    loaded_rays_.assign(rays.begin(), rays.end());
     if (rays.empty()) return;
     assignment_.assign(pairs, balance_);
     const std::size_t to = first_part();
@@ -331,12 +335,13 @@ void NarrowPhase::load(std::span<const PlacedBody> bodies, const SlotChanges& mo
     for (const SavedRays& own : rays) {
         PairList list;
         for (const SlotPair& pair : own.pairs) {
-            const auto at = std::ranges::lower_bound(all.pairs, pair) - all.pairs.begin();
-            list.pairs.push_back(pair);
-            list.slots.push_back(all.slots[std::size_t(at)]);
+            const auto at = std::ranges::lower_bound(all.pairs, pair);
+            const bool is_open = at != all.pairs.end() && *at == pair; // else a body was gone when it was saved
+            list.add({pair, is_open ? all.slots[std::size_t(at - all.pairs.begin())] : NONE});
         }
         part.import_state(bodies, list, own.state);
     }
+    pairs.step_done(); // the assignment knows them
 }
 
 std::vector<KeptRay> NarrowPhase::kept_rays(std::span<const PlacedBody> bodies) {

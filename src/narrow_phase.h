@@ -16,6 +16,7 @@ namespace raycontact {
 /// All contacts of a step.
 struct SavedContacts {
     std::vector<Contact> kept, left_out, sensed;
+    bool were_chosen = false; ///< by the settings as they are: ContactReducer::Last::has_settings of the next step
 };
 /// What a part keeps of its pairs.
 struct SavedRays {
@@ -65,11 +66,11 @@ public:
     /// A step in which nothing has moved since the last, for a method that then finds what it found: contacts stay.
     void rest(StepStats& stats);
     /// Between two steps; bodies as in the last one.
-    SavedContacts save_contacts() const;
+    SavedContacts save_contacts(const SlotChanges& moved) const;
     std::vector<SavedRays> save_rays(std::span<const PlacedBody> bodies);
     /// Before a step, of pairs that are all new to it. moved: all bodies; PlacedBody::centred: of the step before.
-    void load(std::span<const PlacedBody> bodies, const SlotChanges& moved, const OpenPairs& pairs,
-              SavedContacts contacts, std::span<const SavedRays> rays);
+    void load(std::span<const PlacedBody> bodies, const SlotChanges& moved, OpenPairs& pairs, SavedContacts contacts,
+              std::span<const SavedRays> rays);
     /// The rays that the methods keep for the next step, in any order; bodies as in the last step.
     std::vector<KeptRay> kept_rays(std::span<const PlacedBody> bodies);
     /// Whether the last step freed memory, since much less of it is in use than was.
@@ -91,6 +92,10 @@ private:
     };
     /// Whether a part can have pairs in this step.
     bool has_pairs(std::size_t part) const { return parts_.has(part) && (!choice_ || part == in_use_); }
+    void forget_loaded() noexcept {
+        is_loaded_ = false;
+        loaded_rays_.clear();
+    }
     bool asks_few(const SlotChanges& moved, std::size_t bodies);
     const PairList& list_asked(const SlotChanges& moved, OpenPairs& pairs);
     void choose_device(std::span<const PlacedBody> bodies, StepStats& stats);
@@ -113,10 +118,11 @@ private:
     std::size_t in_use_ = 0;   ///< with a choice: the part that has all pairs
     std::vector<Found> found_; ///< by part; without contacts once it is dropped
     std::vector<Contact> merged_;
-    SlotChanges::Seen seen_ = 0; ///< the last step: SlotChanges of bodies
-    bool is_loaded_ = false;     ///< since then: contacts are those of the step before
-    bool few_ = false;           ///< only pairs that may have changed are asked about
-    PairList asked_;             ///< those
+    SlotChanges::Seen seen_ = 0;         ///< the last step: SlotChanges of bodies
+    std::vector<SavedRays> loaded_rays_; ///< since then, for who saves it again
+    bool is_loaded_ = false; ///< since then: contacts are those of the step before, chosen by these settings
+    bool few_ = false;       ///< only pairs that may have changed are asked about
+    PairList asked_;         ///< those
     FaceContacts face_contacts_;
     ContactReducer reducer_;
     ContactStore contacts_, left_out_, sensed_;

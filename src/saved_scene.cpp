@@ -83,6 +83,7 @@ std::vector<std::byte> SavedScene::encode(const Settings& settings,
     next_poses.save(bytes);
     put_pairs(bytes, pairs);
     for (const auto* list : {&contacts.kept, &contacts.left_out, &contacts.sensed}) put_list<Contact>(bytes, *list);
+    put_bytes(bytes, std::uint64_t{contacts.were_chosen});
     put_list<Touch>(bytes, touches);
     put_bytes(bytes, std::uint64_t{rays.size()});
     for (const SavedRays& own : rays) {
@@ -122,6 +123,7 @@ SavedScene SavedScene::decode(std::span<const std::byte> state, const Settings& 
     saved.pairs = take_pairs(rest);
     for (auto* list : {&saved.contacts.kept, &saved.contacts.left_out, &saved.contacts.sensed})
         *list = take_list<Contact>(rest);
+    saved.contacts.were_chosen = take_bytes<std::uint64_t>(rest) != 0;
     saved.touches = take_list<Touch>(rest);
     saved.rays.resize(take_bytes<std::uint64_t>(rest));
     for (SavedRays& own : saved.rays) {

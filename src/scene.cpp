@@ -83,6 +83,12 @@ struct Scene::State {
         if (pair_count > 256) narrow.wake();
     }
 
+    void set_filter(BodySlot slot, const BroadPhaseInput::Filter& filter) {
+        if (finder.filter(slot) == filter) return;
+        finder.set_filter(slot, filter);
+        stepped = 0; // touches may end though no pair closes
+    }
+
     void set_sensor(PlacedBody& body, bool is_sensor) {
         if (std::exchange(body.is_sensor, is_sensor) == is_sensor) return;
         narrow.set_sensor_count(sensors += is_sensor ? 1 : -1);
@@ -314,7 +320,7 @@ struct Scene::State {
         saved.slots = slots;
         saved.next_poses = next_poses;
         saved.pairs = pairs.all(narrow.parts().executor()).pairs;
-        saved.contacts = narrow.save_contacts();
+        saved.contacts = narrow.save_contacts(moved);
         saved.touches.assign(touches.all().begin(), touches.all().end());
         if (follows_rays(narrow.settings().method)) saved.rays = narrow.save_rays(bodies);
         return saved;
@@ -363,6 +369,7 @@ struct Scene::State {
             body = {};
         }
         narrow.set_sensor_count(sensors = 0);
+        next_poses.forget();
         narrow.begin_anew();
         touches.restore({});
         drop_pairs();
@@ -540,12 +547,12 @@ std::uint64_t Scene::user_data(BodyId body) const {
 }
 void Scene::set_filter(BodyId body, std::uint32_t groups, std::uint32_t mask) {
     state_->existing(body, "Scene::set_filter");
-    state_->finder.set_filter(body.slot, {groups, mask, state_->finder.filter(body.slot).is_static});
+    state_->set_filter(body.slot, {groups, mask, state_->finder.filter(body.slot).is_static});
 }
 void Scene::set_static(BodyId body, bool is_static) {
     state_->existing(body, "Scene::set_static");
     const BroadPhaseInput::Filter& filter = state_->finder.filter(body.slot);
-    state_->finder.set_filter(body.slot, {filter.groups, filter.mask, is_static});
+    state_->set_filter(body.slot, {filter.groups, filter.mask, is_static});
 }
 bool Scene::is_static(BodyId body) const {
     state_->existing(body, "Scene::is_static");

@@ -101,7 +101,7 @@ public:
     /// first a body is in group 1, and its mask has all bits. find_contacts(pairs) tests every pair that it is given.
     void set_filter(BodyId body, std::uint32_t groups, std::uint32_t mask);
     /// A static body makes no pair with another static one: for the level, and for bodies that sleep. What touched when
-    /// both became static goes on touching until either moves or is static no more. At first no body is static.
+    /// both became static goes on touching as long as the two stay near each other. At first no body is static.
     /// find_contacts(pairs) tests every pair that it is given.
     void set_static(BodyId body, bool is_static);
     /// As set_static() has it.
@@ -113,8 +113,8 @@ public:
     bool is_sensor(BodyId body) const;
     /// Asked about each pair that would come into being, as its boxes begin to touch, on the thread of the step: false
     /// keeps the two apart until their boxes have parted, and true lets them be a pair until then. The first body has
-    /// the lower slot; pairs come in order. After it was set it is asked about all pairs anew. It must not change the
-    /// scene; what it throws, the step throws. Empty: none.
+    /// the lower slot; pairs come in order. It is asked about all anew once it was set, and after other filters or
+    /// find_contacts(pairs) had a say. It must not change the scene; what it throws, the step throws. Empty: none.
     /// find_contacts(pairs) tests every pair that it is given.
     void set_pair_filter(std::function<bool(BodyId, BodyId)> filter);
     /// It was added here and not removed.

@@ -32,14 +32,21 @@ Vec3 way_of(const Touches::Step& step, BodySlot slot, const Vec3& point) {
     return transform_point(then, rotated_back(now.rotation, point - now.translation)) - point;
 }
 
+/// A pair that touches has lost a body, or a filter came between the two.
+bool is_over(const Touches::Step& step, const Touch& touch) {
+    return !is_there(step, touch.body_a) || !is_there(step, touch.body_b) || step.is_kept_apart(slots_of(touch));
+}
+
+bool may_have_moved(const Touches::Step& step, SlotChanges::Seen last, const Touch& touch) {
+    return !step.moved.is_next(last) || step.moved.is_marked(touch.body_a.slot)
+           || step.moved.is_marked(touch.body_b.slot);
+}
+
 /// Without a contact that touches: they tremble, or sleep, or are apart.
 bool stays_without_touch(const Touches::Step& step, SlotChanges::Seen last, const Touch& touch) {
-    if (!is_there(step, touch.body_a) || !is_there(step, touch.body_b)) return false;
-    const BodySlot slot_a = touch.body_a.slot, slot_b = touch.body_b.slot;
-    if (step.is_kept_apart({slot_a, slot_b})) return false;
-    const bool moved = !step.moved.is_next(last) || step.moved.is_marked(slot_a) || step.moved.is_marked(slot_b);
-    if (!moved) return true;
-    const PlacedBody &a = step.bodies[slot_a], &b = step.bodies[slot_b];
+    if (is_over(step, touch)) return false;
+    if (!may_have_moved(step, last, touch)) return true;
+    const PlacedBody &a = step.bodies[touch.body_a.slot], &b = step.bodies[touch.body_b.slot];
     return distance(*a.shape, a.pose, *b.shape, b.pose, speculative_share * smaller_size(a, b)).has_value();
 }
 
@@ -76,9 +83,13 @@ void Touches::update(Executor& executor, const Step& step) {
         Candidate& c = candidates_[i];
         const auto old = std::ranges::lower_bound(all_, c.pair, {}, slots_of);
         if (old == all_.end() || slots_of(*old) != c.pair) return;
-        c.old = &*old;
+        c.old = static_cast<std::size_t>(old - all_.begin());
         if (c.has_contact && !same_bodies(c.deepest, *old)) return;
         c.stays = c.touches || stays_without_touch(step, seen_, *old);
+        if (!c.stays) return;
+        c.kept = c.has_contact ? c.deepest : *old;
+        c.kept.sensor =
+            step.bodies[c.kept.body_a.slot].is_sensor || step.bodies[c.kept.body_b.slot].is_sensor; // since then
     });
     seen_ = step.moved.now();
     replace();
@@ -116,7 +127,9 @@ void Touches::list_all(Executor& executor, const Step& step) {
 void Touches::list_asked(Executor& executor, const Step& step) {
     pairs_.assign(step.asked.pairs.begin(), step.asked.pairs.end());
     pairs_.insert(pairs_.end(), step.asked.closed.begin(), step.asked.closed.end());
-    pairs_.insert(pairs_.end(), hanging_.begin(), hanging_.end());
+    for (std::size_t i = 0; i < all_.size(); ++i)
+        if (hangs_[i] != 0 && (is_over(step, all_[i]) || may_have_moved(step, seen_, all_[i])))
+            pairs_.push_back(slots_of(all_[i]));
     std::ranges::sort(pairs_);
     pairs_.erase(std::unique(pairs_.begin(), pairs_.end()), pairs_.end());
     candidates_.assign(pairs_.size(), {});
@@ -128,39 +141,41 @@ void Touches::list_asked(Executor& executor, const Step& step) {
     });
 }
 
-// What is not a candidate stays as it is.
+// What is not a candidate stays as it is. In place, if the same pairs touch.
 void Touches::replace() {
     begun_.clear();
     ended_.clear();
-    next_.clear();
-    pairs_.clear();
-    const auto* old = all_.data();
-    const auto* const end = old + all_.size();
-    const auto keep = [&](const Touch& touch, bool hangs) {
-        next_.push_back(touch);
-        if (hangs) pairs_.push_back(slots_of(touch));
-    };
-    const auto keep_until = [&](const Touch* until) {
-        for (; old != until; ++old) keep(*old, false);
-    };
     for (const Candidate& c : candidates_) {
-        if (c.old != nullptr) {
-            keep_until(c.old);
-            ++old;
-            if (c.stays) {
-                keep(c.has_contact ? c.deepest : *c.old, !c.has_contact);
-                continue;
-            }
-            ended_.push_back(*c.old);
-        }
-        if (!c.touches) continue;
-        if (c.old == nullptr) keep_until(std::ranges::lower_bound(std::span(old, end), c.pair, {}, slots_of).base());
-        begun_.push_back(c.deepest);
-        keep(c.deepest, false);
+        if (c.stays) continue;
+        if (c.old != none) ended_.push_back(all_[c.old]);
+        if (c.touches) begun_.push_back(c.deepest);
     }
-    keep_until(end);
+    for (const Candidate& c : candidates_) {
+        if (!c.stays) continue;
+        all_[c.old] = c.kept;
+        hangs_[c.old] = c.has_contact ? 0 : 1;
+    }
+    if (begun_.empty() && ended_.empty()) return;
+    next_.clear();
+    next_hangs_.clear();
+    auto begun = begun_.begin();
+    auto ended = ended_.begin();
+    for (std::size_t i = 0; i <= all_.size(); ++i) {
+        const bool last = i == all_.size();
+        for (; begun != begun_.end() && (last || slots_of(*begun) <= slots_of(all_[i])); ++begun) {
+            next_.push_back(*begun);
+            next_hangs_.push_back(0);
+        }
+        if (last) break;
+        if (ended != ended_.end() && slots_of(*ended) == slots_of(all_[i])) {
+            ++ended;
+            continue;
+        }
+        next_.push_back(all_[i]);
+        next_hangs_.push_back(hangs_[i]);
+    }
     all_.swap(next_);
-    hanging_.swap(pairs_);
+    hangs_.swap(next_hangs_);
 }
 
 void Touches::rest() noexcept {
@@ -172,8 +187,7 @@ void Touches::restore(std::vector<Touch> touches) {
     rest();
     seen_ = 0;
     all_ = std::move(touches);
-    hanging_.clear();
-    for (const Touch& touch : all_) hanging_.push_back(slots_of(touch)); // the next step tells which do
+    hangs_.assign(all_.size(), 1); // the next step tells which do
 }
 
 } // namespace raycontact

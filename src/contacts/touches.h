@@ -43,16 +43,18 @@ private:
         Touch deepest;            ///< its deepest contact
         bool has_contact = false; ///< so there is one
         bool touches = false;
-        const Touch* old = nullptr; ///< it touched in the last step, too
-        bool stays = false;         ///< and does so still
+        std::size_t old = none; ///< its place in all_, if it touched in the last step, too
+        bool stays = false;     ///< and does so still
+        Touch kept;             ///< then
     };
+    static constexpr std::size_t none = ~std::size_t{0};
     void list_all(Executor& executor, const Step& step);
     void list_asked(Executor& executor, const Step& step);
     void replace();
 
     SlotChanges::Seen seen_ = 0; ///< of bodies: the last step
     std::vector<Touch> all_, begun_, ended_, next_;
-    std::vector<SlotPair> hanging_; ///< pairs that touch without a contact; sorted
+    std::vector<char> hangs_, next_hangs_; ///< of all_: it has no contact
     std::vector<SlotPair> pairs_;
     std::vector<std::vector<Candidate>> slices_;
     std::vector<Candidate> candidates_; ///< by pair

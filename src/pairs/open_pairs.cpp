@@ -30,6 +30,7 @@ void OpenPairs::set_all(Executor& executor, std::span<const SlotPair> pairs, boo
     has_all_ = false; // until the list is whole again
     if (!given) pairs = admitted(all_.pairs, pairs, [](const SlotPair&) { return true; });
     asks_all_ = given; // nobody was asked about those
+    if (given) refused_.clear();
     replace(executor, all_, pairs);
     has_all_ = true;
 }
@@ -82,7 +83,6 @@ void OpenPairs::close_all_of(BodySlot body) noexcept {
         has_all_ = false;
         close(heads_[body] / 2);
     }
-    std::erase_if(refused_, [&](const SlotPair& pair) { return pair.first == body || pair.second == body; });
 }
 
 void OpenPairs::clear() noexcept {

@@ -78,7 +78,8 @@ void Assignment::ask(Executor& executor, const PairList& asked) {
 }
 
 PairList Assignment::all_on(std::size_t part) const {
-    const PairSlots& open = parts_[part].open;
+    if (pairs_ == nullptr) return {}; // before any step
+    const PairSlots& open = open_on(part);
     std::vector<OpenPair> sorted;
     for (std::uint32_t slot = 0; slot < open.end(); ++slot)
         if (open.is_open(slot)) sorted.push_back({open[slot], slot});

@@ -282,7 +282,7 @@ class Scene:
 
     def set_static(self, ids: ArrayLike, static: bool = True) -> None:
         """A static body makes no pair with another static one: for what stays, and for bodies that sleep. What touched
-        when both became static goes on touching until either moves or is static no more. A list of pairs that is given
+        when both became static goes on touching as long as the two stay near each other. A list of pairs that is given
         to `find_contacts` is tested all the same.
 
         ids: one or (n,). Raises InputError for an id that is not in the scene.
@@ -308,7 +308,7 @@ class Scene:
         """callback(a, b) is asked about each pair that would come into being, as its boxes begin to touch: False keeps
         the two apart until their boxes have parted. a has the lower slot. It must not use the scene; what it raises,
         `find_contacts` raises. None: no callback. A list of pairs that is given to `find_contacts` is tested all the
-        same."""
+        same. A callback that holds the scene keeps both alive, until another one, or None, takes its place."""
         self._core.set_pair_filter(callback)
 
     def clear(self) -> None:

@@ -37,6 +37,13 @@ std::vector<BodyId> ids_of(const Ids& numbers) {
     return ids;
 }
 
+/// Throws InputError for one that is not in the scene, before anything is done with the others.
+std::vector<BodyId> there(const Scene& scene, const Ids& numbers) {
+    std::vector<BodyId> ids = ids_of(numbers);
+    for (const BodyId id : ids) scene.pose(id);
+    return ids;
+}
+
 Array numbers_of(std::span<const BodyId> ids) {
     std::vector<std::int64_t> numbers;
     numbers.reserve(ids.size());
@@ -456,14 +463,14 @@ void bind_scene(nb::module_& m) {
             "set_filter",
             [](GuardedScene& guarded, const Ids& ids, std::uint32_t groups, std::uint32_t mask) {
                 const auto scene = guarded.enter();
-                for (const BodyId id : ids_of(ids)) scene->set_filter(id, groups, mask);
+                for (const BodyId id : there(*scene, ids)) scene->set_filter(id, groups, mask);
             },
             "ids"_a, "groups"_a, "mask"_a)
         .def(
             "set_static",
             [](GuardedScene& guarded, const Ids& ids, bool is_static) {
                 const auto scene = guarded.enter();
-                for (const BodyId id : ids_of(ids)) scene->set_static(id, is_static);
+                for (const BodyId id : there(*scene, ids)) scene->set_static(id, is_static);
             },
             "ids"_a, "static"_a)
         .def(
@@ -473,7 +480,7 @@ void bind_scene(nb::module_& m) {
             "set_sensor",
             [](GuardedScene& guarded, const Ids& ids, bool is_sensor) {
                 const auto scene = guarded.enter();
-                for (const BodyId id : ids_of(ids)) scene->set_sensor(id, is_sensor);
+                for (const BodyId id : there(*scene, ids)) scene->set_sensor(id, is_sensor);
             },
             "ids"_a, "sensor"_a)
         .def(

@@ -147,6 +147,29 @@ TEST_F(TouchesOfBoxes, FiltersEndThem) {
     EXPECT_TRUE(scene.touching().empty());
     last.clear();
     EXPECT_EQ(step(), (Counts{2, 0, 2}));
+    scene.set_static(a, true);
+    scene.set_static(b, true);
+    EXPECT_EQ(step(), (Counts{0, 0, 2}));
+    scene.set_filter(a, 4, 4); // nothing moves, and no pair closes
+    EXPECT_EQ(step(), (Counts{0, 1, 1}));
+}
+
+// What is given is tested whatever filters say, and trembles as others do.
+TEST_F(TouchesOfBoxes, OfGivenPairsKnowNoFilters) {
+    const BodyId a = scene.add(box, at(0)), b = scene.add(box, at(0.99));
+    scene.set_filter(a, 1, 0);
+    const std::vector<Pair> given{{a, b}};
+    scene.find_contacts(given);
+    EXPECT_EQ(scene.touching().size(), 1u);
+    scene.set_pose(b, at(1.0005));
+    scene.find_contacts(given);
+    EXPECT_EQ(scene.touching().size(), 1u);
+    scene.set_sensor(b, true);
+    scene.find_contacts(given);
+    ASSERT_EQ(scene.touching().size(), 1u);
+    EXPECT_TRUE(scene.touching()[0].sensor) << "without a contact, too";
+    scene.find_contacts();
+    EXPECT_EQ(scene.ended().size(), 1u);
 }
 
 TEST_F(TouchesOfBoxes, SensorsTouchWithoutContacts) {
