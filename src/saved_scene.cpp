@@ -85,6 +85,7 @@ std::vector<std::byte> SavedScene::encode(const Settings& settings,
     for (const auto* list : {&contacts.kept, &contacts.left_out, &contacts.sensed}) put_list<Contact>(bytes, *list);
     put_bytes(bytes, std::uint64_t{contacts.were_chosen});
     put_list<Touch>(bytes, touches);
+    put_list<Touches::Place>(bytes, places);
     put_bytes(bytes, std::uint64_t{rays.size()});
     for (const SavedRays& own : rays) {
         put_pairs(bytes, own.pairs);
@@ -125,6 +126,7 @@ SavedScene SavedScene::decode(std::span<const std::byte> state, const Settings& 
         *list = take_list<Contact>(rest);
     saved.contacts.were_chosen = take_bytes<std::uint64_t>(rest) != 0;
     saved.touches = take_list<Touch>(rest);
+    saved.places = take_list<Touches::Place>(rest);
     saved.rays.resize(take_bytes<std::uint64_t>(rest));
     for (SavedRays& own : saved.rays) {
         own.pairs = take_pairs(rest);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "body_slots.h"
+#include "contacts/touches.h"
 #include "narrow_phase.h"
 #include "next_poses.h"
 
@@ -34,6 +35,7 @@ struct SavedScene {
     std::vector<SlotPair> pairs; ///< that are open
     SavedContacts contacts;
     std::vector<Touch> touches;
+    std::vector<Touches::Place> places; ///< of touches
     std::vector<SavedRays> rays;
 
     std::vector<std::byte> encode(const Settings& settings, std::span<const std::shared_ptr<const Shape>> shapes) const;

@@ -322,6 +322,7 @@ struct Scene::State {
         saved.pairs = pairs.all(narrow.parts().executor()).pairs;
         saved.contacts = narrow.save_contacts(moved);
         saved.touches.assign(touches.all().begin(), touches.all().end());
+        saved.places.assign(touches.places().begin(), touches.places().end());
         if (follows_rays(narrow.settings().method)) saved.rays = narrow.save_rays(bodies);
         return saved;
     }
@@ -355,7 +356,7 @@ struct Scene::State {
         next_poses = saved.next_poses;
         pairs.set_all(narrow.parts().executor(), saved.pairs, true);
         narrow.load(bodies, moved, pairs, saved.contacts, saved.rays);
-        touches.restore(saved.touches);
+        touches.restore(saved.touches, saved.places);
         forget_moves();
         slots = std::move(taken);
     }
@@ -371,7 +372,7 @@ struct Scene::State {
         narrow.set_sensor_count(sensors = 0);
         next_poses.forget();
         narrow.begin_anew();
-        touches.restore({});
+        touches.restore({}, {});
         drop_pairs();
     }
 
@@ -606,7 +607,7 @@ void Scene::prepare() {
 void Scene::forget_contacts() {
     state_->narrow.prepare();
     state_->narrow.forget_contacts();
-    state_->touches.restore({});
+    state_->touches.restore({}, {});
     state_->stepped = 0;
 }
 
@@ -663,7 +664,7 @@ void Scene::load_state(std::span<const std::byte> state, std::span<const std::sh
     s.drop_pairs();
     s.narrow.prepare();
     s.narrow.forget_contacts();
-    s.touches.restore({});
+    s.touches.restore({}, {});
     s.stats = {};
     try {
         s.load(saved, shapes);

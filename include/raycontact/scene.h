@@ -161,8 +161,8 @@ public:
     std::span<const LostContact> lost_contacts() const noexcept;
     /// Pairs of bodies that touch since the last step, those of sensors, too; by slots. Two bodies begin to touch with
     /// a contact that touches, or with a speculative one that will, if both go on to where they are expected
-    /// (set_next_pose()). They end when they have no contact that touches and are farther apart than speculative_share
-    /// of the smaller body's box diagonal. So a body that rests, and trembles, touches all the time.
+    /// (set_next_pose()). They end without a contact when the points that touched last are farther apart along its normal
+    /// than speculative_share of the smaller body's diagonal, or a quarter of it beside. What trembles goes on touching.
     std::span<const Touch> begun() const noexcept;
     /// Pairs that no longer touch, and those of which a body was removed since the last step; by slots.
     std::span<const Touch> ended() const noexcept;

@@ -406,8 +406,9 @@ class Scene:
     def begun(self) -> Touches:
         """Pairs of bodies that touch since the last step, those of sensors, too. Two bodies begin to touch with a
         contact that touches, or with a speculative one that will, if both go on to where they are expected
-        (`set_next_poses`). They end when they have no contact that touches and are farther apart than 0.0025 of the
-        smaller body's box diagonal: a body that rests, and trembles, touches all the time."""
+        (`set_next_poses`). They end without a contact when the points that touched last are farther apart along its
+        normal than 0.0025 of the smaller body's box diagonal, or a quarter of it beside: what trembles goes on
+        touching."""
         return _touches(self._core.begun())
 
     @property
