@@ -6,7 +6,6 @@
 #include "executor/row_slices.h"
 #include "free_all.h"
 #include "interruption.h"
-#include "platform/system.h"
 #include "schedule/moving_pairs.h"
 
 #include <algorithm>
@@ -171,9 +170,8 @@ void NarrowPhase::rest(StepStats& stats) {
     stats.narrow_ms = milliseconds_since(start);
 }
 
-// Once much less is kept for pairs than was, what a step makes anew is freed as well. The allocator keeps what was
-// freed in small pieces: it goes back to the system, and again after the next step, which frees the lists of what was
-// lost.
+// Once much less is kept for pairs than was, what a step makes anew is freed as well; again after the next step, which
+// frees the lists of what was lost.
 void NarrowPhase::trim(std::uint64_t pair_bytes) {
     constexpr std::uint64_t much = 16 << 20;
     most_bytes_ = std::max(most_bytes_, pair_bytes);
@@ -193,7 +191,6 @@ void NarrowPhase::trim(std::uint64_t pair_bytes) {
     contacts_.trim();
     left_out_.trim();
     sensed_.trim();
-    platform::trim_heap();
 }
 
 void NarrowPhase::find(std::size_t number, std::span<const PlacedBody> bodies, const SlotChanges& moved) {

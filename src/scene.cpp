@@ -11,6 +11,7 @@
 #include "narrow_phase.h"
 #include "next_poses.h"
 #include "pair_finder.h"
+#include "platform/system.h"
 #include "pose_fault.h"
 #include "read_poses.h"
 #include "saved_scene.h"
@@ -295,6 +296,7 @@ struct Scene::State {
         };
         touches.update(narrow.parts().executor(),
                        {bodies, next, moved, narrow.contacts(), narrow.sensed(), narrow.asked(pairs), is_kept_apart});
+        stats.pair_bytes += touches.bytes();
     }
 
     std::vector<std::shared_ptr<const Shape>> list_shapes() const {
@@ -379,8 +381,10 @@ struct Scene::State {
     void trim() {
         finder.trim();
         pairs.trim();
+        touches.trim();
         last_given.shrink_to_fit();
         free_all(given_pairs, sorted, sorter, columns);
+        platform::trim_heap(); // the allocator keeps what was freed in small pieces
     }
 
     // Frees memory once less than a quarter of it is in use.

@@ -2,7 +2,9 @@
 #include "contacts/touches.h"
 
 #include "executor/row_slices.h"
+#include "free_all.h"
 #include "mesh/vector.h"
+#include "platform/system.h"
 
 #include <algorithm>
 #include <utility>
@@ -186,9 +188,28 @@ void Touches::replace(const Step& step) {
     places_.swap(next_places_);
 }
 
+// No trim() follows a step that rests: what is much is freed here.
 void Touches::rest() noexcept {
+    constexpr std::size_t much = 4096;
+    const bool frees = begun_.capacity() + ended_.capacity() > much;
     begun_.clear();
     ended_.clear();
+    if (!frees) return;
+    free_all(begun_, ended_);
+    platform::trim_heap();
+}
+
+void Touches::trim() {
+    free_all(next_, next_places_, pairs_, slices_, candidates_, found_);
+    for (auto* list : {&all_, &begun_, &ended_}) list->shrink_to_fit();
+    places_.shrink_to_fit();
+}
+
+std::uint64_t Touches::bytes() const {
+    const std::size_t touches = all_.capacity() + next_.capacity() + begun_.capacity() + ended_.capacity();
+    return touches * sizeof(Touch) + (places_.capacity() + next_places_.capacity()) * sizeof(Place)
+           + (candidates_.capacity() + 2 * found_.capacity())
+                 * sizeof(Candidate); // twice: the slices of what was found
 }
 
 void Touches::restore(std::vector<Touch> touches, std::vector<Place> places) {

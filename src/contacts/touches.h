@@ -35,6 +35,9 @@ public:
     void update(Executor& executor, const Step& step);
     /// Of a step in which nothing is new.
     void rest() noexcept;
+    /// Frees memory that the next update() makes anew.
+    void trim();
+    std::uint64_t bytes() const;
     /// Puts back what all() and places() were; nothing is told of it.
     void restore(std::vector<Touch> touches, std::vector<Place> places);
 

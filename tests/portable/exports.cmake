@@ -2,8 +2,8 @@
 # cmake -DNM=... -DLIBRARY=FILE -DHEADERS=FOLDER... -P exports.cmake: fails where a shared library shows a name that no
 # public header declares, or a function of a public header is not marked RAYCONTACT_API.
 cmake_policy(VERSION 3.25)
-# What raycontact::recording takes of the library's inside.
-set(inside BodySlots measured_report)
+# What raycontact::recording and raycontact::bullet take of the library's inside.
+set(inside BodySlots measured_report round_contacts add_facet)
 
 set(declared "")
 set(faults "")

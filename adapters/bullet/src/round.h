@@ -2,7 +2,7 @@
 #pragma once
 
 #include <convert.h>
-#include <round/round_contacts.h>
+#include "round/round_contacts.h"
 
 class btHeightfieldTerrainShape;
 

@@ -104,12 +104,12 @@ class ContactPatches(NamedTuple):
     first_corner: NDArray[np.int64]
 
     def hull(self, i: int) -> NDArray[np.float64]:
-        """(k, 3): the corners of the convex hull of what presses in the i-th patch, in the plane through its centre
+        """(m, 3): the corners of the convex hull of what presses in the i-th patch, in the plane through its centre
         across its normal; counter-clockwise where the normal points at the reader."""
         return self.corners[self.first_corner[i] : self.first_corner[i + 1]]
 
     def wrench_basis(self, i: int, about: ArrayLike) -> NDArray[np.float64]:
-        """(k, 6): what the i-th patch can do to b without friction, however its pressure is spread: forces of 1 N along
+        """(m, 6): what the i-th patch can do to b without friction, however its pressure is spread: forces of 1 N along
         the normal at the corners of the hull, and their torques about a point, (3,), metres, world frame. Sums of
         these rows with factors from 0 on are all there is."""
         arms = self.hull(i) - as_points(about, "about")

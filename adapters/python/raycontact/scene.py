@@ -54,7 +54,8 @@ class Touches(NamedTuple):
     bodies: (n, 2) int64: ids; of those that ended, bodies may have been removed since.
     point: (n, 3) float64, metres, world frame: between the witness points of the deepest contact of the last step in
         which the two had any.
-    normal, depth: (n, 3) and (n,) float32: that contact's.
+    normal: (n, 3) float32, unit, world frame: that contact's.
+    depth: (n,) float32, metres: that contact's.
     sensor: (n,) bool: one of the two is a sensor.
     """
 
