@@ -33,9 +33,9 @@ RAYCONTACT_API Mass mass_of(const Round& round);
 /// Of 12 triangles, exactly, from -half to half. Throws InputError for halves that are not from 1e-6 to 1e8 m.
 RAYCONTACT_API std::shared_ptr<const Shape> make_box(const Vec3& half);
 
-/// The ground: a box whose top is z = 0, exactly. It is finite because the broad phase sorts bodies by their boxes;
-/// what leaves it at a side falls off. Steps see its corners in float32, which costs no depth: the top is flat, and
-/// heights above it are near 0. The thickness is what a body may fall through in one step unseen. Throws InputError for
+/// The ground: a box whose top is z = 0, for queries exactly. It is finite because the broad phase sorts bodies by
+/// their boxes; what leaves it at a side falls off. Steps see heights from its middle in float32: their depths are
+/// right to 1e-7 of the thickness. That is also what a body may fall through in one step unseen. Throws InputError for
 /// measures that are not from 1e-6 to 1e8 m.
 RAYCONTACT_API std::shared_ptr<const Shape> make_plane(double half_extent = 1000, double thickness = 10);
 
@@ -50,7 +50,7 @@ struct HeightGrid {
 /// The closed solid under a grid of heights, down to a floor, with walls around. heights[i * columns + j] is z at
 /// (i * step_x, j * step_y); a cell is two triangles, which share its corners (i, j) and (i + 1, j + 1). floor: z of
 /// the bottom, below all heights. Throws InputError for another number of heights, fewer than two rows or columns,
-/// heights that are not finite or not above the floor, and steps that are not finite and above 0; and as Shape::make().
+/// heights that are not finite or not above the floor, and steps that are not from 1e-6 to 1e8 m; and as Shape::make().
 RAYCONTACT_API std::shared_ptr<const Shape> make_height_field(std::span<const double> heights, const HeightGrid& grid,
                                                               double floor, std::uint32_t threads = 0);
 

@@ -32,21 +32,12 @@ bool matches(std::string_view pattern, std::string_view text) {
     return pattern.find_first_not_of('*', p) == none;
 }
 
-/// A path, or its end from some node on.
-bool matches_path(std::string_view pattern, std::string_view path) {
-    for (;;) {
-        if (matches(pattern, path)) return true;
-        const std::size_t node = path.find('/');
-        if (node == std::string_view::npos) return false;
-        path.remove_prefix(node + 1);
-    }
-}
-
 /// The parts that patterns match, by their names, files, or the names of these without folders; with "/" by paths, too.
 class Names {
 public:
-    explicit Names(std::span<const AssemblyPart> parts) : all_(parts) {
+    explicit Names(std::span<const AssemblyPart> parts) {
         for (std::size_t i = 0; i < parts.size(); ++i) {
+            paths_.push_back(path_of(parts[i]));
             add(parts[i].name, i);
             if (parts[i].file.empty()) continue;
             add(parts[i].file, i);
@@ -66,8 +57,8 @@ public:
                 if (matches(pattern, name)) add_all(parts);
         }
         if (pattern.find('/') != std::string::npos)
-            for (std::size_t i = 0; i < all_.size(); ++i)
-                if (matches_path(pattern, path_of(all_[i]))) found.push_back(i);
+            for (std::size_t i = 0; i < paths_.size(); ++i) // a path, or its end from some node on
+                if (matches(pattern, paths_[i]) || matches("*/" + pattern, paths_[i])) found.push_back(i);
         if (found.empty())
             throw InputError(
                 what + ": no part and no file is called \"" + pattern
@@ -79,7 +70,7 @@ public:
 
 private:
     void add(const std::string& name, std::size_t part) { parts_of_[name].push_back(part); }
-    std::span<const AssemblyPart> all_;
+    std::vector<std::string> paths_; ///< by part
     std::unordered_map<std::string, std::vector<std::size_t>> parts_of_;
 };
 

@@ -62,6 +62,7 @@ public:
             const Node& parent = nodes_[nodes_[n].parent];
             nodes_[n].above = parent.part != AssemblyPart::no_part ? parent.part : parent.above;
         }
+        name_nodes();
         for (std::size_t i = 0; i < parts.size(); ++i) {
             parts[i].parent = nodes_[places[i]].above;
             parts[i].under = ancestors_of(places[i]);
@@ -132,10 +133,25 @@ private:
         }
     }
 
+    /// Names of nodes; those that stand beside each other under one name are numbered.
+    void name_nodes() {
+        std::map<std::pair<std::size_t, std::string>, std::size_t> count, number;
+        const auto key_of = [&](std::size_t n) { return std::pair(nodes_[n].parent, name_of(item("nodes", n))); };
+        for (std::size_t n = 0; n < nodes_.size(); ++n)
+            if (nodes_[n].in_scene && !nodes_[n].children.empty()) ++count[key_of(n)];
+        shown_.resize(nodes_.size());
+        for (std::size_t n = 0; n < nodes_.size(); ++n) {
+            if (!nodes_[n].in_scene || nodes_[n].children.empty()) continue;
+            const auto key = key_of(n);
+            shown_[n] = key.second;
+            if (count[key] > 1) shown_[n] += " #" + std::to_string(++number[key]);
+        }
+    }
+
     std::vector<std::string> ancestors_of(std::size_t node) const {
         Ancestors found;
         for (std::size_t n = nodes_[node].parent; n != AssemblyPart::no_part; n = nodes_[n].parent)
-            if (!found.add(name_of(item("nodes", n)))) break;
+            if (!found.add(shown_[n])) break;
         return std::move(found).from_root();
     }
 
@@ -405,6 +421,7 @@ private:
     }
 
     std::vector<Node> nodes_;
+    std::vector<std::string> shown_;                           ///< names of nodes in paths
     std::vector<std::size_t> from_roots_;                      ///< nodes, each after its parent
     std::map<std::size_t, GltfSkin> skins_;                    ///< that were read
     std::map<std::string, std::vector<std::string>> left_out_; ///< why, and the names of the nodes

@@ -215,9 +215,16 @@ public:
         const PreparedMesh unrounded = given ? std::move(*given) : prepared_;
         prepared_ = unrounded;
         given.reset();
-        report("rounded coordinates to multiples of " + text_of(round_vertices())
-               + " m: parts that cross were too near to each other's vertices and edges");
+        const std::string step = text_of(round_vertices());
         renew();
+        if (surface_->is_empty()) { // a needle
+            prepared_ = unrounded;
+            renew();
+            report("left parts that cross as they are: too near for numbers that are rounded");
+            return false;
+        }
+        report("rounded coordinates to multiples of " + step
+               + " m: parts that cross were too near to each other's vertices and edges");
         if (const auto is_solid = unite_in_rounds(name, given)) return *is_solid;
         if (!given) {
             prepared_ = unrounded;

@@ -71,7 +71,7 @@ PlacedRound::Nearest PlacedRound::nearest(const Vec3& point) const {
     const double square = length2(along);
     const Vec3 part = square > 0 ? std::clamp(dot(off, along) / square, 0.0, 1.0) * along : Vec3{};
     const double metres = length(off - part);
-    const Vec3 outward = metres > 0 ? (off - part) / metres : beside(along);
+    const Vec3 outward = metres > 1e-150 ? (off - part) / metres : beside(along);
     return {metres - radius_, about_ + (from_ + part + radius_ * outward), outward};
 }
 

@@ -30,11 +30,15 @@ void check_length(double metres, const char* what) {
         throw InputError(std::string("time of impact: the ") + what + " is negative or not finite; give metres");
 }
 
-/// A ball that turns about its middle alone does not turn for others.
+/// What turns about its middle, or its axis, alone does not turn for others: its core stays where it is.
 RigidMotion without_rolling(const Shape& shape, RigidMotion motion) {
     const Round* round = shape.round();
-    if (round != nullptr && round->from == round->to && rotated(motion.from.rotation, round->from) == motion.centre)
-        motion.angular_velocity = {};
+    if (round == nullptr) return motion;
+    const Vec3 from = rotated(motion.from.rotation, round->from), to = rotated(motion.from.rotation, round->to);
+    const auto stays = [&](const Vec3& point) {
+        return cross(motion.angular_velocity, point - motion.centre) == Vec3{};
+    };
+    if (stays(from) && stays(to)) motion.angular_velocity = {};
     return motion;
 }
 

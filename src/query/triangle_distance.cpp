@@ -50,11 +50,18 @@ void shorten_between(Span& span, const Face& p, const Face& q) {
 }
 
 std::optional<Vec3> crossing_of(const Face& segment, const Face& face) {
-    const double from = dot(face.normal, segment.corner[0] - face.corner[0]);
-    const double to = dot(face.normal, segment.corner[1] - face.corner[0]);
-    if (!(from * to < 0)) return std::nullopt;
-    const Vec3 point = segment.corner[0] + (from / (from - to)) * segment.edge[0];
-    return is_before(face, point) ? std::optional(point) : std::nullopt;
+    const Vec3 &p = segment.corner[0], &way = segment.edge[0], normal = cross(face.edge[0], face.edge[1]);
+    if (!(dot(normal, p - face.corner[0]) * dot(normal, segment.corner[1] - face.corner[0]) < 0)) return std::nullopt;
+    // By volumes over the edges, not by Face::normal, which a needle has not.
+    Vec3 point;
+    std::array<double, 3> volumes{};
+    for (std::size_t k = 0; k < 3; ++k) {
+        volumes[k] = dot(way, cross(face.corner[(k + 1) % 3] - p, face.corner[(k + 2) % 3] - p));
+        point += volumes[k] * face.corner[k];
+    }
+    const double sum = volumes[0] + volumes[1] + volumes[2];
+    if (std::ranges::any_of(volumes, [&](double volume) { return volume * sum < 0; }) || sum == 0) return std::nullopt;
+    return point / sum;
 }
 
 } // namespace raycontact

@@ -444,6 +444,11 @@ def test_patches_and_weighted_contacts_say_how_bodies_press(torus):
         assert (np.cross(np.roll(hull, -1, axis=0) - hull, patches.centre[i] - hull) @ normal > 0).all()
         assert (basis[:, :3] == normal).all()
         assert basis[:, 3:] == pytest.approx(np.cross(hull - [1, 2, 3], normal))
+    assert np.array_equal(patches.hull(-1), patches.hull(len(patches.pair) - 1))
+    with pytest.raises(IndexError):
+        patches.hull(len(patches.pair))
+    with pytest.raises(rc.InputError, match="about"):
+        patches.wrench_basis(0, [[1, 2, 3]] * 2)
     contacts = rc.collide(floor, torus, under, over, direction="weighted")
     assert set(contacts.kind) == {rc.FeatureKind.FACES}
     assert (contacts.depth * contacts.weight).sum() == pytest.approx(volume, rel=1e-5)

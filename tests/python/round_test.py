@@ -72,3 +72,16 @@ def test_scenes_answer_with_round_shapes():
 def test_bad_measures_are_refused(make):
     with pytest.raises(rc.InputError, match="radius|half|thickness"):
         make()
+
+
+def test_what_takes_meshes_alone_refuses_round_shapes():
+    ball = rc.ball(0.1)
+    for ask in (
+        lambda: rc.clash([ball, ball]),
+        lambda: rc.clash_along([ball, ball], "*", np.eye(4)[None]),
+        lambda: rc.Shape(ball),
+        lambda: rc.Shape(ball, scale=2),
+    ):
+        with pytest.raises(rc.InputError, match="round"):
+            ask()
+    assert len(rc.Mesh(ball).faces) > 100, "a picture, by name"

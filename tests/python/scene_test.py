@@ -506,6 +506,11 @@ def test_filters_static_bodies_and_a_callback_keep_pairs_apart(box):
     scene.set_pair_filter(lambda a, b: scene.clear())
     with pytest.raises(RuntimeError):
         scene.find_contacts()
+    scene.set_pair_filter(lambda a, b: None)
+    with pytest.raises(rc.InputError, match="None"):
+        scene.find_contacts()
+    with pytest.raises(rc.InputError, match="called"):
+        scene.set_pair_filter(3)
     scene.set_pair_filter(None)
     scene.find_contacts()
     assert len(scene.pairs) == 3
@@ -543,3 +548,7 @@ def test_a_state_is_pickled_and_repeats(torus, method):
         scene.load_state(state._replace(data=state.data[:-1] + b"?"))
     with pytest.raises(rc.InputError, match="settings"):
         rc.Scene(direction="ray").load_state(state)
+    for wrong in (None, b"x", (1, []), (state.data, [3])):
+        with pytest.raises(rc.InputError, match="save_state"):
+            scene.load_state(wrong)
+    assert repr(state).startswith("<SceneState: ")

@@ -327,7 +327,8 @@ def clash_along(
 
     moving: names or patterns of the parts that move, as `clash` has them in `against`.
     moves: (n, 4, 4), rigid, n at least 1: from where the parts are placed to where they are at times 0, 1, ..., in the
-        frame of the assembly; from each to the next by a screw, the shortest turn. `turn` and `slide` make those of a
+        frame of the assembly; from each to the next by a screw, the shortest turn: give poses less than half a round
+        apart, else it goes the other way. `turn` and `slide` make those of a
         hinge and of a drawer: `turn((0, 0, 1), np.linspace(0, 2, 3), hinge)`.
     at: (n,), what `PathClash.at` is at these times, as the angles of a turn; in between in proportion.
     clearance, clearances: metres; parts that come no farther apart are found, too.
@@ -339,6 +340,8 @@ def clash_along(
     not as many finite numbers.
     """
     given = _given(assembly, scale, weld, components)
+    if moves is None:
+        raise InputError("moves: is None; give poses, as turn() and slide() make them")
     poses = as_poses(moves, "moves", rigid=True)
     poses = poses[np.newaxis] if poses.ndim == 2 else poses
     if poses.ndim != 3:
@@ -443,6 +446,8 @@ def _parts_of(assembly: Any) -> _Parts:
     for i, item in enumerate(assembly):
         name, mesh, pose = item if isinstance(item, tuple) and len(item) == 3 else (None, item, None)
         matrices = as_pose(pose, f"part {i}: pose", rigid=True)[None]
+        if isinstance(mesh, Shape) and mesh.round is not None:
+            raise InputError(f"part {i}: is round, and clash is of meshes; Mesh(shape) is a picture of it by triangles")
         if id(mesh) not in made:
             made[id(mesh)] = mesh if isinstance(mesh, Mesh) else Mesh(mesh)
         own = made[id(mesh)]

@@ -73,10 +73,11 @@ def _finite(value: ArrayLike, what: str) -> NDArray[np.float64]:
 
 def _unit(value: ArrayLike, what: str) -> NDArray[np.float64]:
     vectors = _finite(as_points(value, what), what)
-    size = np.linalg.norm(vectors, axis=-1, keepdims=True)
-    if not (size > 0).all():
+    largest = np.abs(vectors).max(axis=-1, keepdims=True)
+    if not (largest > 0).all():
         raise InputError(f"{what}: one is zero")
-    return vectors / size
+    vectors = vectors / largest  # else squares overflow, or vanish
+    return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
 
 
 def nearest_rigid(poses: PoseLike) -> NDArray[np.float64]:

@@ -12,6 +12,7 @@ called exact, it is that for the mesh's own double coordinates, rotated and move
 
 from __future__ import annotations
 
+import operator
 from typing import NamedTuple, Optional, Union, overload
 
 import numpy as np
@@ -105,14 +106,19 @@ class ContactPatches(NamedTuple):
 
     def hull(self, i: int) -> NDArray[np.float64]:
         """(m, 3): the corners of the convex hull of what presses in the i-th patch, in the plane through its centre
-        across its normal; counter-clockwise where the normal points at the reader."""
+        across its normal; counter-clockwise where the normal points at the reader. Raises IndexError where there is no
+        such patch; -1 is the last one."""
+        i = range(len(self.area))[operator.index(i)]
         return self.corners[self.first_corner[i] : self.first_corner[i + 1]]
 
     def wrench_basis(self, i: int, about: ArrayLike) -> NDArray[np.float64]:
         """(m, 6): what the i-th patch can do to b without friction, however its pressure is spread: forces of 1 N along
         the normal at the corners of the hull, and their torques about a point, (3,), metres, world frame. Sums of
         these rows with factors from 0 on are all there is."""
-        arms = self.hull(i) - as_points(about, "about")
+        origin = as_points(about, "about")
+        if origin.shape != (3,) or not np.isfinite(origin).all():
+            raise InputError(f"about: has shape {origin.shape}; give three finite numbers")
+        arms = self.hull(i) - origin
         force = np.broadcast_to(self.normal[i], arms.shape)
         return np.hstack([force, np.cross(arms, force)])
 

@@ -76,6 +76,9 @@ class SceneState(NamedTuple):
     data: bytes
     shapes: list[Shape]
 
+    def __repr__(self) -> str:
+        return f"<SceneState: {len(self.data)} bytes, {len(self.shapes)} shapes>"
+
 
 class BodyRayHits(NamedTuple):
     """Where rays meet the bodies of a scene first. A ray without a hit has distance inf, NaN and -1.
@@ -306,10 +309,12 @@ class Scene:
         return self._core.is_sensor(as_id(id, "id"))
 
     def set_pair_filter(self, callback: Optional[Callable[[int, int], bool]]) -> None:
-        """callback(a, b) is asked about each pair that would come into being, as its boxes begin to touch: False keeps
-        the two apart until their boxes have parted. a has the lower slot. It must not use the scene; what it raises,
+        """callback(a, b) is asked about each pair that would come into being, as its boxes begin to touch, and once
+        about all that are there when it is set: False keeps the two apart until their boxes have parted. a has the lower slot. It must not use the scene; what it raises,
         `find_contacts` raises. None: no callback. A list of pairs that is given to `find_contacts` is tested all the
         same. A callback that holds the scene keeps both alive, until another one, or None, takes its place."""
+        if callback is not None and not callable(callback):
+            raise InputError(f"callback: a {type(callback).__name__} cannot be called")
         self._core.set_pair_filter(callback)
 
     def clear(self) -> None:
@@ -330,7 +335,12 @@ class Scene:
         Raises InputError for a state that is damaged, of another version, of other settings or with other shapes,
         before anything changes.
         """
-        self._core.load_state(state.data, [shape._core for shape in state.shapes])
+        if not isinstance(state, tuple) or len(state) != 2:
+            raise InputError(f"state: is a {type(state).__name__}; give what save_state() returned")
+        data, shapes = state
+        if not isinstance(data, (bytes, bytearray)) or not all(isinstance(shape, Shape) for shape in shapes):
+            raise InputError("state: is not data and shapes; give what save_state() returned")
+        self._core.load_state(bytes(data), [shape._core for shape in shapes])
 
     def shape(self, id: _Id) -> Shape:
         """The one that the body was added with. Raises InputError for an id that is not in the scene."""
@@ -405,9 +415,9 @@ class Scene:
 
     @property
     def begun(self) -> Touches:
-        """Pairs of bodies that touch since the last step, those of sensors, too. Two bodies begin to touch with a
-        contact that touches, or with a speculative one that will, if both go on to where they are expected
-        (`set_next_poses`). They end without a contact when the points that touched last are farther apart along its
+        """Pairs of bodies that began to touch in the last step, those of sensors, too; `len(scene.begun.bodies)` is
+        their number. Two bodies begin to touch with a contact that touches, or, but for sensors, with a speculative one
+        that will, if both go on to where they are expected (`set_next_poses`). They end without a contact when the points that touched last are farther apart along its
         normal than 0.0025 of the smaller body's box diagonal, or a quarter of it beside: what trembles goes on
         touching."""
         return _touches(self._core.begun())

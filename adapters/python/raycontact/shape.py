@@ -84,6 +84,8 @@ class Shape:
         overlaps: str = "unite",
         threads: int = 0,
     ) -> None:
+        if isinstance(mesh, Shape) and mesh.round is not None:
+            raise InputError("mesh: is a round shape; use it as it is, or Mesh(shape), a picture of it by triangles")
         if not isinstance(mesh, Mesh) or type(scale) is not float or scale != 1.0:
             mesh = Mesh(mesh, scale=scale)
         self._core = _core.make_shape(

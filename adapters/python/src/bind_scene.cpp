@@ -145,7 +145,9 @@ void set_pair_filter(GuardedScene& guarded, const nb::object& callback) {
     });
     scene->set_pair_filter([held](BodyId a, BodyId b) {
         const nb::gil_scoped_acquire gil;
-        return nb::cast<bool>(nb::bool_((*held)(number_of(a), number_of(b))));
+        const nb::object answer = (*held)(number_of(a), number_of(b));
+        if (answer.is_none()) throw InputError("the pair filter returned None; return whether the two may be a pair");
+        return nb::cast<bool>(nb::bool_(answer));
     });
 }
 

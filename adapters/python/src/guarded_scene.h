@@ -19,8 +19,9 @@ public:
     public:
         explicit Entry(GuardedScene& guarded) : guarded_(guarded) {
             if (guarded_.in_use_.test_and_set())
-                throw std::runtime_error("the scene is in use: by another thread (use one scene for each thread, or a "
-                                         "lock), or a step was under way when this process was forked");
+                throw std::runtime_error(
+                    "the scene is in use: by another thread (use one scene for each thread, or a "
+                    "lock), by its own pair filter, or a step was under way when this process was forked");
         }
         ~Entry() { guarded_.in_use_.clear(); }
         Entry(const Entry&) = delete;

@@ -267,6 +267,11 @@ TEST(LoadGltf, PartsKnowWhatTheyAreUnder) {
     for (int i = 0; i < 50; ++i)
         chain += R"({"name":")" + std::to_string(i) + std::string(98, 'x') + R"(","children":[)" + std::to_string(i + 1)
                  + "]},";
+    EXPECT_EQ(
+        under(R"([{"name":"hall","children":[1,2]},{"name":"robot","children":[3]},{"name":"robot","children":[4]},)"
+              R"({"mesh":0,"name":"arm"},{"mesh":0,"name":"arm"}])"),
+        (Under{{"hall", "robot #1"}, {"hall", "robot #2"}}))
+        << "two of one name are two";
     const Under deep = under("[" + chain + R"({"mesh":0}])");
     ASSERT_EQ(deep.size(), 1u);
     EXPECT_EQ(deep[0].size(), 10u);

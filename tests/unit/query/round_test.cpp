@@ -574,5 +574,29 @@ TEST(RoundQueries, ContactsAreRefused) {
     EXPECT_THROW(overlap_volume(*box, {}, *ball, {}), InputError);
 }
 
+TEST(Primitives, LongThinCapsulesAreMade) {
+    for (const auto& [radius, half] : {std::pair{1e-6, 1e8}, {1e-6, 3e7}, {1e-5, 1e8}, {5e-6, 1e8}}) {
+        const auto capsule = make_capsule(radius, half);
+        EXPECT_EQ(capsule->round()->radius, radius);
+        EXPECT_TRUE(contains(*capsule, {0, 0, half}));
+        EXPECT_FALSE(contains(*capsule, {3 * radius, 0, 0}));
+    }
+}
+
+// A face so thin that it has no normal to a float's precision is pierced all the same, whatever its first corner.
+TEST(RoundQueries, ACapsulePiercesANeedle) {
+    constexpr double wide = 9e-4;
+    for (std::uint32_t first = 0; first < 3; ++first) {
+        Mesh sheet;
+        sheet.vertices = {{0, 0, 0}, {1000, 0, 0}, {1000, wide, 0}, {0, wide, 0}};
+        for (const std::array<std::uint32_t, 3>& t : {std::array{0u, 1u, 2u}, std::array{0u, 2u, 3u}})
+            sheet.triangles.push_back({t[first], t[(first + 1) % 3], t[(first + 2) % 3]});
+        const auto needle = Shape::make(sheet), capsule = make_capsule(9e-6, 1);
+        for (const double x : {100.0, 333.3, 750.0})
+            for (const double y : {0.2 * wide, 0.35 * wide, 0.8 * wide})
+                EXPECT_TRUE(intersects(*needle, {}, *capsule, {.translation = {x, y, 0.3}})) << first << ' ' << x;
+    }
+}
+
 } // namespace
 } // namespace raycontact
