@@ -473,7 +473,9 @@ void add_clash(CLI::App& app) {
                                          "print the parts and the nodes that they are under, and search nothing");
     command->add_flag("--json", options->json, "print one JSON line a clash on stdout");
     command->add_flag("--check", options->check, "exit status 3 where parts clash");
-    for (const char* other : {"--along", "--range", "--group", "--out", "--csv", "--bcf", "--check"})
+    for (const char* other :
+         {"--against", "--exclude", "--along", "--range", "--clearance", "--tolerance", "--ignore-touching", "--volume",
+          "--separation", "--group", "--out", "--csv", "--bcf", "--check"})
         tree->excludes(command->get_option(other));
     command->footer(
         "A clash has the depth of its deepest contact and that contact's point, which is in both parts. Parts touch\n"

@@ -16,7 +16,9 @@ double length_of(const std::string& text, const std::string& word, const std::st
     const auto number = read_number<double>(text.substr(0, end));
     const LengthUnit* const named = length_unit(own);
     constexpr double most = 1e9;
-    if (!number || !(*number >= 0 && *number <= most) || (!own.empty() && !named))
+    if (number && !own.empty() && !named)
+        throw InputError("--clearance: \"" + word + "\": \"" + own + "\" is no unit; give m, mm, cm or in");
+    if (!number || !(*number >= 0 && *number <= most))
         throw InputError("--clearance: \"" + word
                          + "\" does not begin with a length from 0 to 1e9; give LENGTH, "
                            "LENGTH:SET or LENGTH:SET:SET, as 25mm:pipe*");

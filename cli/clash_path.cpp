@@ -159,6 +159,8 @@ std::string path_json(const PathClashReport& report, std::span<const AssemblyPar
     for (const PathClash& c : report.clashes) {
         const Json line{{"moving", parts[c.moving].name},
                         {"other", parts[c.other].name},
+                        {"path_moving", path_of(parts[c.moving])},
+                        {"path_other", path_of(parts[c.other])},
                         {"meet", c.meet},
                         {"at", path.first + path.step * c.place.time},
                         {"time", c.place.time},
@@ -177,7 +179,7 @@ std::string path_summary(const PathClashReport& report, std::span<const Assembly
                                    meet == 1 ? "s" : "", path.at(0), path.at(double(path.moves.size() - 1)));
     if (report.nearest)
         text += fmt::format("; of the others {} and {} come nearest, {} {} apart at {}",
-                            parts[report.nearest->moving].name, parts[report.nearest->other].name,
+                            path_of(parts[report.nearest->moving]), path_of(parts[report.nearest->other]),
                             float(report.nearest->place.distance), unit, path.at(report.nearest->place.time));
     if (!report.faults.empty())
         text +=

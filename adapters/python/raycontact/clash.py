@@ -173,7 +173,8 @@ class Clashes(_Found[Clash]):
             if clash.kind not in ("near", "touching"):
                 depth = "no depth" if clash.depth is None else f"{clash.depth:.4g} m"
             a, b = self.paths[clash.index_a], self.paths[clash.index_b]
-            lines.append(f"{depth:>12}  {a}  x  {b}{_NOTES.get(clash.kind, '')}")
+            apart = f", parted by {-clash.separation.distance:.4g} m" if clash.separation else ""
+            lines.append(f"{depth:>12}  {a}  x  {b}{_NOTES.get(clash.kind, '')}{apart}")
         lines.append(repr(self)[1:-1])
         if self.open:
             lines.append(f"open, so that nothing is inside: {_some(self.open)}")
@@ -220,8 +221,8 @@ class PathClashes(_Found[PathClash]):
 
     def __repr__(self) -> str:
         meet = sum(one.meet for one in self)
-        least = f", the others {self.nearest.distance:.6g} m apart" if self.nearest else ""
-        return f"<PathClashes: {meet} of {self.pairs} pairs meet among {len(self.parts)} parts{least}>"
+        least = f"; of the others the nearest stay {self.nearest.distance:.6g} m apart" if self.nearest else ""
+        return f"<PathClashes: {meet} meet among {len(self.parts)} parts{least}>"
 
     def __str__(self) -> str:
         lines = []
