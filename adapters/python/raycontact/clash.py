@@ -447,7 +447,7 @@ def _parts_of(assembly: Any) -> _Parts:
     for i, item in enumerate(assembly):
         name, mesh, pose = item if isinstance(item, tuple) and len(item) == 3 else (None, item, None)
         matrices = as_pose(pose, f"part {i}: pose", rigid=True)[None]
-        if isinstance(mesh, Shape) and mesh.round is not None:
+        if getattr(mesh, "round", None) is not None:
             raise InputError(f"part {i}: is round, and clash is of meshes; Mesh(shape) is a picture of it by triangles")
         if id(mesh) not in made:
             made[id(mesh)] = mesh if isinstance(mesh, Mesh) else Mesh(mesh)

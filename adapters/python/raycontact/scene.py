@@ -310,9 +310,10 @@ class Scene:
 
     def set_pair_filter(self, callback: Optional[Callable[[int, int], bool]]) -> None:
         """callback(a, b) is asked about each pair that would come into being, as its boxes begin to touch, and once
-        about all that are there when it is set: False keeps the two apart until their boxes have parted. a has the lower slot. It must not use the scene; what it raises,
-        `find_contacts` raises. None: no callback. A list of pairs that is given to `find_contacts` is tested all the
-        same. A callback that holds the scene keeps both alive, until another one, or None, takes its place."""
+        about all that are there when it is set: False keeps the two apart until their boxes have parted. a has the
+        lower slot. It must not use the scene; what it raises, `find_contacts` raises. None: no callback. A list of
+        pairs that is given to `find_contacts` is tested all the same. A callback that holds the scene keeps both alive,
+        until another one, or None, takes its place."""
         if callback is not None and not callable(callback):
             raise InputError(f"callback: a {type(callback).__name__} cannot be called")
         self._core.set_pair_filter(callback)
@@ -417,9 +418,9 @@ class Scene:
     def begun(self) -> Touches:
         """Pairs of bodies that began to touch in the last step, those of sensors, too; `len(scene.begun.bodies)` is
         their number. Two bodies begin to touch with a contact that touches, or, but for sensors, with a speculative one
-        that will, if both go on to where they are expected (`set_next_poses`). They end without a contact when the points that touched last are farther apart along its
-        normal than 0.0025 of the smaller body's box diagonal, or a quarter of it beside: what trembles goes on
-        touching."""
+        that will, if both go on to where they are expected (`set_next_poses`). They end without a contact when the
+        points that touched last are farther apart along its normal than 0.0025 of the smaller body's box diagonal, or a
+        quarter of it beside: what trembles goes on touching."""
         return _touches(self._core.begun())
 
     @property

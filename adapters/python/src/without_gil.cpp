@@ -38,9 +38,10 @@ void find_main_thread() {
 
 struct sigaction pythons {}; ///< what was there before ours
 
+// Python knows it first: whoever sees the flag raises what Python has to raise, once. It may run on any thread.
 void on_ctrl_c(int number) {
-    ctrl_c = true;
     pythons.sa_handler(number);
+    ctrl_c = true;
 }
 
 bool is_there(const struct sigaction& action) {
