@@ -131,6 +131,7 @@ void Touches::list_all(Executor& executor, const Step& step) {
 }
 
 void Touches::list_asked(Executor& executor, const Step& step) {
+    found_.clear();
     pairs_.assign(step.asked.pairs.begin(), step.asked.pairs.end());
     pairs_.insert(pairs_.end(), step.asked.closed.begin(), step.asked.closed.end());
     for (std::size_t i = 0; i < all_.size(); ++i)
@@ -206,10 +207,8 @@ void Touches::trim() {
 }
 
 std::uint64_t Touches::bytes() const {
-    const std::size_t touches = all_.capacity() + next_.capacity() + begun_.capacity() + ended_.capacity();
-    return touches * sizeof(Touch) + (places_.capacity() + next_places_.capacity()) * sizeof(Place)
-           + (candidates_.capacity() + 2 * found_.capacity())
-                 * sizeof(Candidate); // twice: the slices of what was found
+    const auto held = static_cast<std::uint64_t>(std::ranges::count(places_, std::uint64_t{0}, &Place::gone));
+    return 2 * held * (sizeof(Touch) + sizeof(Place)) + 3 * found_.size() * sizeof(Candidate);
 }
 
 void Touches::restore(std::vector<Touch> touches, std::vector<Place> places) {

@@ -37,6 +37,7 @@ public:
     void rest() noexcept;
     /// Frees memory that the next update() makes anew.
     void trim();
+    /// What it keeps for pairs that have a contact, about.
     std::uint64_t bytes() const;
     /// Puts back what all() and places() were; nothing is told of it.
     void restore(std::vector<Touch> touches, std::vector<Place> places);
