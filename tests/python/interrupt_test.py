@@ -104,7 +104,12 @@ def test_overlaps_of_a_scene(ring):
     scene = crowd(ring, 300)
     poses = helpers.random_poses(200_000, 0.5)
     assert ended_by_ctrl_c(lambda: scene.overlaps(ring, poses), 1.0, latest=2)
-    assert ended_by_ctrl_c(lambda: scene.overlaps_any(ring, poses, wanted=[]) and scene.overlaps(ring, poses), 1.0)
+
+    def ask_of_none():
+        while True:  # one takes a second, more or less
+            scene.overlaps_any(ring, poses, wanted=[])
+
+    assert ended_by_ctrl_c(ask_of_none, 1.0)
     assert scene.overlaps_any(ring)
 
 
