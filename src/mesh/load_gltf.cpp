@@ -144,7 +144,7 @@ private:
             if (!nodes_[n].in_scene || nodes_[n].children.empty()) continue;
             const auto key = key_of(n);
             shown_[n] = key.second;
-            if (count[key] > 1) shown_[n] += " #" + std::to_string(++number[key]);
+            if (count[key] > 1) shown_[n].append(" #").append(std::to_string(++number[key]));
         }
     }
 
@@ -185,7 +185,8 @@ private:
         std::vector<std::string> found;
         for (const auto& [why, names] : left_out_) {
             std::string text = "left out";
-            for (const std::string& name : names) text += (&name == &names[0] ? " '" : ", '") + name + "'";
+            for (const std::string& name : names)
+                text.append(&name == &names[0] ? " '" : ", '").append(name).append("'");
             found.push_back(text + ": " + why);
         }
         for (const std::string& name : unread_extensions())

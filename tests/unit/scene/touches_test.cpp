@@ -201,6 +201,7 @@ TEST_F(TouchesOfBoxes, SensorsTouchWithoutContacts) {
 
 TEST_F(TouchesOfBoxes, PairFilterIsAskedOnceForEachMeeting) {
     std::vector<BodyId> bodies;
+    bodies.reserve(4);
     for (int i = 0; i < 4; ++i) bodies.push_back(scene.add(box, at(0.9 * i)));
     std::map<std::pair<BodyId, BodyId>, int> asked;
     const auto odd = [&](BodyId a, BodyId b) {
@@ -260,6 +261,7 @@ TEST(Touches, DoNotDependOnWhichPairsAStepAsksAbout) {
     Scene scene;
     std::vector<BodyId> bodies;
     const auto place = [&] { return Pose{.translation = {6 * number(), 6 * number(), 6 * number()}}; };
+    bodies.reserve(60);
     for (int i = 0; i < 60; ++i) bodies.push_back(scene.add(box, place()));
     std::set<std::pair<BodyId, BodyId>> touching;
     for (int step = 0; step < 60; ++step) {
