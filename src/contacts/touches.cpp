@@ -25,7 +25,7 @@ Touch touch_of(const Contact& contact, bool is_sensor) {
             contact.normal, contact.depth,  is_sensor};
 }
 
-Touches::Place place_of(const Touches::Step& step, const Contact& contact) {
+Touches::Place witness_of(const Touches::Step& step, const Contact& contact) {
     const auto in_frame = [&](BodyId body, const Vec3& point) {
         const Pose& pose = step.bodies[body.slot].pose;
         return rotated_back(pose.rotation, point - pose.translation);
@@ -157,10 +157,10 @@ void Touches::replace(const Step& step) {
         if (!c.stays) {
             if (c.old != none) ended_.push_back(all_[c.old]);
             if (c.touches) begun_.push_back(touch_of(*c.deepest, c.is_sensor));
-            if (c.touches) next_places_.push_back(place_of(step, *c.deepest));
+            if (c.touches) next_places_.push_back(witness_of(step, *c.deepest));
         } else if (c.deepest != nullptr) {
             all_[c.old] = touch_of(*c.deepest, c.is_sensor);
-            places_[c.old] = place_of(step, *c.deepest);
+            places_[c.old] = witness_of(step, *c.deepest);
         } else {
             all_[c.old].sensor = step.bodies[c.pair.first].is_sensor || step.bodies[c.pair.second].is_sensor;
             places_[c.old].gone = 1;

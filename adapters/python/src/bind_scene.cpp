@@ -44,6 +44,17 @@ std::vector<BodyId> there(const Scene& scene, const Ids& numbers) {
     return ids;
 }
 
+template <void (Scene::*set)(BodyId, bool)>
+void set_flag(GuardedScene& guarded, const Ids& ids, bool value) {
+    const auto scene = guarded.enter();
+    for (const BodyId id : there(*scene, ids)) ((*scene).*set)(id, value);
+}
+
+template <bool (Scene::*is)(BodyId) const>
+bool flag(GuardedScene& guarded, std::int64_t id) {
+    return ((*guarded.enter()).*is)(id_of(id));
+}
+
 Array numbers_of(std::span<const BodyId> ids) {
     std::vector<std::int64_t> numbers;
     numbers.reserve(ids.size());
@@ -468,26 +479,10 @@ void bind_scene(nb::module_& m) {
                 for (const BodyId id : there(*scene, ids)) scene->set_filter(id, groups, mask);
             },
             "ids"_a, "groups"_a, "mask"_a)
-        .def(
-            "set_static",
-            [](GuardedScene& guarded, const Ids& ids, bool is_static) {
-                const auto scene = guarded.enter();
-                for (const BodyId id : there(*scene, ids)) scene->set_static(id, is_static);
-            },
-            "ids"_a, "static"_a)
-        .def(
-            "is_static", [](GuardedScene& guarded, std::int64_t id) { return guarded.enter()->is_static(id_of(id)); },
-            "id"_a)
-        .def(
-            "set_sensor",
-            [](GuardedScene& guarded, const Ids& ids, bool is_sensor) {
-                const auto scene = guarded.enter();
-                for (const BodyId id : there(*scene, ids)) scene->set_sensor(id, is_sensor);
-            },
-            "ids"_a, "sensor"_a)
-        .def(
-            "is_sensor", [](GuardedScene& guarded, std::int64_t id) { return guarded.enter()->is_sensor(id_of(id)); },
-            "id"_a)
+        .def("set_static", &set_flag<&Scene::set_static>, "ids"_a, "static"_a)
+        .def("is_static", &flag<&Scene::is_static>, "id"_a)
+        .def("set_sensor", &set_flag<&Scene::set_sensor>, "ids"_a, "sensor"_a)
+        .def("is_sensor", &flag<&Scene::is_sensor>, "id"_a)
         .def("set_pair_filter", &set_pair_filter, "callback"_a.none())
         .def("clear", [](GuardedScene& guarded) { guarded.enter()->clear(); })
         .def("save_state", &save_state)
