@@ -45,9 +45,9 @@ struct BodyImpact : Impact {
 struct Touch {
     BodyId body_a;   ///< has the lower slot
     BodyId body_b;   ///< has the higher slot
-    Vec3 point;      ///< between the witness points of the deepest contact of the last step that had any, world frame
-    Vec3f normal;    ///< that contact's
-    float depth = 0; ///< that contact's
+    Vec3 point;      ///< world frame, metres: between the witness points of its deepest contact, when it last had one
+    Vec3f normal;    ///< unit, world frame, from a to b: that contact's
+    float depth = 0; ///< metres: that contact's
     bool sensor = false; ///< one of them is a sensor: it has no contacts
 };
 
@@ -159,10 +159,10 @@ public:
     std::span<const Contact> contacts(BodyId a, BodyId b) const;
     /// What touched in the last step and does not in this one, in the same order; `Contact::is_new` marks the new ones.
     std::span<const LostContact> lost_contacts() const noexcept;
-    /// Pairs of bodies that touch since the last step, those of sensors, too; by slots. Two bodies begin to touch with
-    /// a contact that touches, or with a speculative one that will, if both go on to where they are expected
-    /// (set_next_pose()). They end without a contact when the points that touched last are farther apart along its normal
-    /// than speculative_share of the smaller body's diagonal, or a quarter of it beside. What trembles goes on touching.
+    /// Pairs that began to touch in the last step, those of sensors, too; by slots. Two bodies begin to touch with a
+    /// contact that touches, or, but for sensors, a speculative one that will where both are expected next
+    /// (set_next_pose()). They end without a contact when the points that touched last are apart along its normal by
+    /// more than speculative_share of the smaller body's diagonal, or a quarter of it beside: what trembles touches.
     std::span<const Touch> begun() const noexcept;
     /// Pairs that no longer touch, and those of which a body was removed since the last step; by slots.
     std::span<const Touch> ended() const noexcept;
@@ -181,7 +181,7 @@ public:
     /// Puts back what save_state() told, in this scene or in another one with equal settings (devices and threads may
     /// differ): later steps find, bit for bit, what they found after it. Ids mean again what they meant. shapes: those
     /// of shapes() when it was saved, in their order. What was here is gone, and nothing is told of it. Throws
-    /// InputError for bytes that are damaged or of another version, other settings or other shapes, before anything
+    /// InputError for damaged bytes, another version or settings, or shapes of other counts or boxes, before anything
     /// changes; and std::runtime_error where a device fails: then the scene has no bodies.
     void load_state(std::span<const std::byte> state, std::span<const std::shared_ptr<const Shape>> shapes);
 
