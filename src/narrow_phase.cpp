@@ -94,14 +94,17 @@ bool NarrowPhase::asks_few(const SlotChanges& moved, std::size_t bodies) {
     return true;
 }
 
-const PairList& NarrowPhase::list_asked(const SlotChanges& moved, OpenPairs& pairs) {
+const PairList& NarrowPhase::list_asked(std::span<const PlacedBody> bodies, const SlotChanges& moved,
+                                        OpenPairs& pairs) {
+    Executor& executor = parts_.executor();
+    asked_.resize(0);
+    if (few_) pairs.list_of(executor, moved, asked_);
+    round_pairs_.clear();
+    if (round_count_ > 0) round_pairs_.list(executor, bodies, pairs, few_ ? &asked_ : nullptr);
     bool lists = false;
     for (std::size_t i = 0; i < parts_.size(); ++i)
         if (has_pairs(i) && parts_[i].answers(settings_) != Answers::all) lists = true;
-    if (!few_ && lists) return pairs.all(parts_.executor());
-    asked_.resize(0);
-    if (few_) pairs.list_of(parts_.executor(), moved, asked_);
-    return asked_;
+    return !few_ && lists ? pairs.all(executor) : asked_;
 }
 
 void NarrowPhase::step(std::span<const PlacedBody> bodies, const SlotChanges& moved, OpenPairs& pairs, StepStats& stats,
@@ -113,7 +116,7 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, const SlotChanges& mo
     stats.broad_ms = broad_ms;
     prepare();
     try {
-        assignment_.assign(pairs, balance_);
+        assignment_.assign(pairs, bodies, round_count_ > 0, balance_);
         if (const auto lost = parts_.take_lost(); !lost.empty()) give_away(lost, stats);
         if (choice_) choose_device(bodies, stats);
         for (std::size_t i = 0; i + 1 < parts_.size(); ++i) {
@@ -121,12 +124,13 @@ void NarrowPhase::step(std::span<const PlacedBody> bodies, const SlotChanges& mo
             if (!move || !move_pairs(*move, bodies, stats)) break;
         }
         few_ = asks_few(moved, bodies.size());
-        assignment_.ask(parts_.executor(), list_asked(moved, pairs));
+        assignment_.ask(parts_.executor(), list_asked(bodies, moved, pairs));
         auto failed = parts_.run([&](std::size_t part) { find(part, bodies, moved); });
         assignment_.step_done();
         while (!failed.empty()) failed = replace(failed, stats);
         std::vector<Contact>& found = merge();
         Executor& executor = parts_.executor(); // of a part that is left
+        round_pairs_.run(executor, settings_, bodies, found);
         take_sensed(bodies, found);
         face_contacts_.run(executor, settings_, bodies, found);
         const ContactStore::Asked asked = this->asked(pairs);
@@ -186,6 +190,7 @@ void NarrowPhase::trim(std::uint64_t pair_bytes) {
         if (parts_.has(i)) parts_[i].trim();
     for (Found& found : found_) found.contacts.shrink_to_fit();
     free_all(merged_, asked_);
+    round_pairs_.trim();
     face_contacts_.trim();
     reducer_.trim();
     contacts_.trim();
@@ -319,7 +324,7 @@ void NarrowPhase::load(std::span<const PlacedBody> bodies, const SlotChanges& mo
     is_loaded_ = contacts.were_chosen;
     loaded_rays_.assign(rays.begin(), rays.end());
     if (rays.empty()) return;
-    assignment_.assign(pairs, balance_);
+    assignment_.assign(pairs, bodies, round_count_ > 0, balance_);
     const std::size_t to = first_part();
     for (std::size_t i = 0; i < parts_.size(); ++i) {
         if (i == to || !parts_.has(i)) continue;

@@ -4,6 +4,7 @@
 #include "contacts/contact_store.h"
 #include "contacts/face_contacts.h"
 #include "contacts/reduce.h"
+#include "contacts/round_pairs.h"
 #include "part/parts.h"
 #include "schedule/assignment.h"
 #include "schedule/choice.h"
@@ -79,6 +80,8 @@ public:
     std::span<const Contact> left_out() const { return left_out_.all(); }
     /// How many bodies are sensors.
     void set_sensor_count(std::size_t count) { sensor_count_ = count; }
+    /// How many are balls or capsules.
+    void set_round_count(std::size_t count) { round_count_ = count; }
     /// Those of pairs with a sensor.
     const ContactStore& sensed() const { return sensed_; }
     /// Whose contacts the last step asked about. pairs: its own, before OpenPairs::step_done().
@@ -97,7 +100,7 @@ private:
         loaded_rays_.clear();
     }
     bool asks_few(const SlotChanges& moved, std::size_t bodies);
-    const PairList& list_asked(const SlotChanges& moved, OpenPairs& pairs);
+    const PairList& list_asked(std::span<const PlacedBody> bodies, const SlotChanges& moved, OpenPairs& pairs);
     void choose_device(std::span<const PlacedBody> bodies, StepStats& stats);
     void open_other();
     bool move_pairs(const Balance::Move& move, std::span<const PlacedBody> bodies, StepStats& stats);
@@ -123,6 +126,8 @@ private:
     bool is_loaded_ = false; ///< since then: contacts are those of the step before, chosen by these settings
     bool few_ = false;       ///< only pairs that may have changed are asked about
     PairList asked_;         ///< those
+    RoundPairs round_pairs_;
+    std::size_t round_count_ = 0;
     FaceContacts face_contacts_;
     ContactReducer reducer_;
     ContactStore contacts_, left_out_, sensed_;

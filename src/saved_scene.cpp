@@ -52,6 +52,7 @@ std::vector<std::byte> bytes_of(const Shape& shape) {
     put_bytes(bytes, shape.box_min());
     put_bytes(bytes, shape.box_max());
     put_bytes(bytes, shape.radius());
+    put_bytes(bytes, shape.round() != nullptr ? shape.round()->radius : -1.0);
     return bytes;
 }
 

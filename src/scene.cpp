@@ -22,10 +22,6 @@ BodyId Scene::add(std::shared_ptr<const Shape> shape, const Pose& pose) {
     const BodyId id = s.slots.next();
     const BodySlot slot = id.slot;
     if (!shape) throw InputError(name_of(id) + ": the shape is null");
-    if (shape->round() != nullptr)
-        throw InputError(name_of(id)
-                         + ": its shape is round, and contacts are of meshes alone; give a mesh, or ask by queries "
-                           "(overlaps, sweep, distance)");
     refuse_faulty(pose, id);
     // Room first: an add that fails then leaves no more than unused slots.
     if (slot >= s.bodies.size()) {
@@ -40,6 +36,7 @@ BodyId Scene::add(std::shared_ptr<const Shape> shape, const Pose& pose) {
     s.finder.add_shape(*shape);
     s.mark(slot);
     s.bodies[slot] = {shape.get(), s.narrow.parts().index_of(shape.get()), id.generation, pose, pose, pose};
+    s.count_round(*shape, 1);
     return s.slots.give();
 }
 
@@ -48,6 +45,7 @@ void Scene::remove(BodyId body) {
     PlacedBody& gone = s.existing(body, "Scene::remove");
     s.finder.remove_body(body.slot, *gone.shape);
     s.set_sensor(gone, false);
+    s.count_round(*gone.shape, -1);
     s.narrow.parts().remove_shape(gone.shape);
     gone.shape = nullptr;
     s.mark(body.slot);

@@ -90,6 +90,10 @@ struct Scene::State {
         narrow.set_sensor_count(sensors += is_sensor ? 1 : -1);
     }
 
+    void count_round(const Shape& shape, int by) {
+        if (shape.round() != nullptr) narrow.set_round_count(rounds += std::size_t(by));
+    }
+
     void mark(BodySlot slot) noexcept {
         moved.mark(slot);
         finder.mark(slot);
@@ -150,7 +154,7 @@ struct Scene::State {
                 if (!pairs.slots().is_open(pair)) continue;
                 const auto [a, b] = pairs.slots()[pair];
                 for (const BodySlot slot : {a, b})
-                    if (!bodies[slot].shape->is_prepared())
+                    if (!bodies[slot].shape->is_prepared() && bodies[slot].shape->round() == nullptr)
                         met_shapes.try_emplace(bodies[slot].shape->weak_from_this(), false);
             }
         } catch (const std::exception&) {
@@ -344,6 +348,7 @@ struct Scene::State {
                    body.centred,
                    body.centred,
                    body.margin};
+            count_round(*shape, 1);
             set_sensor(own, body.is_sensor != 0);
             user_data[body.slot] = body.user_data;
             finder.set_filter(body.slot, {body.groups, body.mask, body.is_static != 0});
@@ -367,6 +372,7 @@ struct Scene::State {
             body = {};
         }
         narrow.set_sensor_count(sensors = 0);
+        narrow.set_round_count(rounds = 0);
         next_poses.forget();
         narrow.begin_anew();
         touches.restore({}, {});
@@ -415,6 +421,7 @@ struct Scene::State {
     ContactColumnWriter columns;
     Touches touches;
     std::size_t sensors = 0; ///< bodies
+    std::size_t rounds = 0;  ///< likewise
     StepStats stats;
     std::map<std::weak_ptr<const Shape>, bool, std::owner_less<>> met_shapes; ///< not prepared; whether it is wanted
     Preparer preparer;                                                        ///< last: it ends first

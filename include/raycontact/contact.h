@@ -23,6 +23,8 @@ enum class FeatureKind : std::uint8_t {
     vertex_face = 3,
     /// A face of either body, of direction `weighted`: what the bodies share between them (docs/internals/patches.md).
     faces = 4,
+    /// A ball or capsule (primitives.h) and the other body, in closed form: where their distance is a local minimum.
+    round = 5,
 };
 
 /// Whether a feature is named by what it is of either body, not of the source alone.
@@ -35,13 +37,16 @@ enum class Side : std::uint8_t { a = 0, b = 1 };
 
 /// What touches: a feature of either body. Indices are those of the bodies' files.
 struct ContactFeature {
-    /// Of no feature.
+    /// Of no feature, and of one that has no triangle.
     static constexpr std::uint32_t no_index = std::numeric_limits<std::uint32_t>::max();
 
     FeatureKind kind = FeatureKind::vertex; ///< what is in contact
-    Side source = Side::a;                  ///< whose vertex it is, where the ray begins; of edges and faces a
+    /// Whose vertex it is, where the ray begins; who is round; of edges, of faces and between round bodies a.
+    Side source = Side::a;
     /// Of the source a vertex, of the other body the triangle that was hit (`refined`: the nearest); of edges an edge
-    /// of either: 3 x its lowest triangle + its first corner there; of faces a triangle of either.
+    /// of either: 3 x its lowest triangle + its first corner there; of faces a triangle of either. Of a round source
+    /// the place on it (0 and 1: an end of its axis, 2: between them, + 3 for each further one there, + 2^20 of what is
+    /// touched later), of the other body the triangle, or no_index if it is round, too.
     std::uint32_t index_a = 0;
     std::uint32_t index_b = 0; ///< likewise, of body b
 
@@ -62,6 +67,8 @@ struct ContactFeature {
             return std::uint64_t{3} << 62 | side << 32 | own;
         case FeatureKind::faces: // a mesh has fewer than 2^30 of either
             return std::uint64_t{13} << 60 | std::uint64_t{index_a} << 30 | index_b;
+        case FeatureKind::round:
+            return std::uint64_t{25} << 59 | side << 58 | own;
         case FeatureKind::vertex_face:
             break;
         }
@@ -85,11 +92,12 @@ struct Contact {
     float ray_length = 0; ///< |r|, metres from the point to the hit; of a speculative contact as long as the gap
     /// Direction `weighted`, m^2: of faces, the area across the normal that they share; of others, a share of the
     /// source's surface (Shape::vertex_areas; of edges, a sixth of the mean area of their triangles, of two at each
-    /// edge). Other directions: 1.
+    /// edge); of a round body, the disc that the contact's plane cuts from it. Other directions: 1.
     float weight = 1;
-    /// The witness points, world frame, metres: the source's vertex, a point of a's edge, or beside the middle of what
-    /// faces share, and the other body's, which lies `depth` along the normal from it (with direction `reprojected` in
-    /// the plane of the face that was hit). point_a - point_b = depth x normal: a reaches that much too far.
+    /// The witness points, world frame, metres: the source's vertex, a point of a's edge or of a round surface, or
+    /// beside the middle of what faces share, and the other body's, which lies `depth` along the normal from it (with
+    /// direction `reprojected` in the plane of the face that was hit). point_a - point_b = depth x normal: a reaches
+    /// that much too far.
     Vec3 point_a;
     Vec3 point_b; ///< the witness point of body_b
 

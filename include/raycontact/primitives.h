@@ -12,11 +12,12 @@
 
 // Shapes by their measures. Body frame, metres.
 //
-// Balls and capsules are round (Shape::round()): queries (query.h, separation.h) take them as what they are, to
-// rounding, whose triangles all are Shape::no_triangle. A ray that touches one meets it. contact_patches() and a
-// Scene's bodies take meshes alone so far: they throw InputError for round shapes. The mesh of a round shape is a
-// picture, with vertices on the surface: for viewers, files, and the regions of query.h. Its box and radius are those
-// of the body.
+// Balls and capsules are round (Shape::round()): queries (query.h, separation.h) and contacts take them as what they
+// are, to rounding; in answers of queries their triangles are Shape::no_triangle. A ray that touches one meets it.
+// Their contacts (FeatureKind::round) are those of every method, on the host: a ball rolls on a mesh without feeling
+// facets or seams, and where meshes lie beside one another they are one surface to it. contact_patches() takes meshes
+// alone: it throws InputError for round shapes. The mesh of a round shape is a picture, with vertices on the surface:
+// for viewers, files, and the regions of query.h. Its box and radius are those of the body.
 
 namespace raycontact {
 

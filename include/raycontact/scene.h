@@ -190,7 +190,8 @@ public:
     /// The pairs of the last step, sorted by their slots; without those of bodies that have been removed since. Makes
     /// the list when it is asked for; valid until the next step, add or remove.
     std::span<const Pair> pairs() const;
-    /// Which entry of StepDetails::work found the contacts of pairs()[i]. Throws InputError for another i.
+    /// Which entry of StepDetails::work found the contacts of pairs()[i]. Of a pair with a round body, which the host
+    /// answers, the first. Throws InputError for another i.
     std::uint32_t device_of_pair(std::size_t i) const;
     /// Which device has the pairs, and why, for a person: with devices "auto" as "cpu: 1.2 ms a step, cuda:0 3.41 ms,
     /// measured with 7650 pairs", milliseconds of the narrow phase's part on a device; else "cpu: as given".

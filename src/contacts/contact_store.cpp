@@ -25,12 +25,14 @@ ContactFeature feature_of(std::uint64_t key) {
     if (key >> 60 == 13)
         return {FeatureKind::faces, Side::a, static_cast<std::uint32_t>(key >> 30 & edge >> 1),
                 static_cast<std::uint32_t>(key & edge >> 1)};
-    const bool inside = tag == 3;
-    const bool of_a = inside ? (key >> 32 & 1) == 0 : tag == 0;
-    const auto vertex = static_cast<std::uint32_t>(key);
+    const bool is_round = key >> 59 == 25, inside = tag == 3 && !is_round;
+    const bool of_b = ((is_round ? key >> 58 : inside ? key >> 32 : tag) & 1) != 0;
+    const auto own = static_cast<std::uint32_t>(key);
     constexpr std::uint32_t none = ContactFeature::no_index;
-    return {inside ? FeatureKind::inside : FeatureKind::vertex, of_a ? Side::a : Side::b, of_a ? vertex : none,
-            of_a ? none : vertex};
+    return {is_round ? FeatureKind::round
+            : inside ? FeatureKind::inside
+                     : FeatureKind::vertex,
+            of_b ? Side::b : Side::a, of_b ? none : own, of_b ? own : none};
 }
 
 } // namespace

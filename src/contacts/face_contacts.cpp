@@ -86,7 +86,8 @@ void replace(OverlapPatches& patches, std::span<const PlacedBody> bodies, std::s
              std::vector<Contact>& contacts) {
     const auto [body_a, body_b] = std::pair(row.front().body_a, row.front().body_b);
     const PlacedBody &a = bodies[body_a.slot], &b = bodies[body_b.slot];
-    const bool touches = std::ranges::any_of(row, [](const Contact& c) { return !c.is_speculative(); });
+    const bool touches = std::ranges::any_of(
+        row, [](const Contact& c) { return !c.is_speculative() && c.feature.kind != FeatureKind::round; });
     if (!touches || !a.shape->has_inside() || !b.shape->has_inside() || !patches.find(a, b, false)) {
         contacts.insert(contacts.end(), row.begin(), row.end());
         return;

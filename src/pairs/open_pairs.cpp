@@ -60,10 +60,7 @@ std::span<const SlotPair> OpenPairs::admitted(std::span<const SlotPair> old, std
 
 void OpenPairs::set_of(Executor& executor, std::span<const BodySlot> bodies, std::span<const char> is_in,
                        std::span<const SlotPair> pairs) {
-    find(
-        executor, bodies.size(), [&](std::size_t i) { return bodies[i]; },
-        [&](BodySlot body) { return is_in[body] != 0; });
-    list_found(executor, of_bodies_);
+    list_of(executor, bodies, is_in, of_bodies_);
     const auto concerns = [&](const SlotPair& pair) { return is_in[pair.first] != 0 || is_in[pair.second] != 0; };
     if (replace(executor, of_bodies_, admitted(of_bodies_.pairs, pairs, concerns))) has_all_ = false;
 }
@@ -121,6 +118,14 @@ void OpenPairs::list_of(Executor& executor, const SlotChanges& bodies, PairList&
         const SlotPair pair = slots_[slot];
         if (!is_in(pair.first) && !is_in(pair.second)) found_.back().push_back({pair, slot});
     }
+    list_found(executor, list);
+}
+
+void OpenPairs::list_of(Executor& executor, std::span<const BodySlot> bodies, std::span<const char> is_in,
+                        PairList& list) {
+    find(
+        executor, bodies.size(), [&](std::size_t i) { return bodies[i]; },
+        [&](BodySlot body) { return is_in[body] != 0; });
     list_found(executor, list);
 }
 

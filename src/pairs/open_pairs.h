@@ -44,6 +44,8 @@ public:
     const PairList& all(Executor& executor);
     /// Those that opened since the last step, and those of some bodies, in order.
     void list_of(Executor& executor, const SlotChanges& bodies, PairList& list);
+    /// Those of some bodies, in order. is_in: whether a body is one of them, by slot.
+    void list_of(Executor& executor, std::span<const BodySlot> bodies, std::span<const char> is_in, PairList& list);
     /// Those that closed since the last step, sorted; of what may have closed before, all.
     std::span<const SlotPair> closed();
     /// How many were open in the last step, too.

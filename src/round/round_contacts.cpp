@@ -11,7 +11,6 @@ namespace raycontact {
 
 namespace {
 
-constexpr int coming = 1 << 20; ///< added to the places of what is touched later
 /// Cosine from which on what is near now is what is touched then.
 constexpr double alike_from = 0.9, same_from = 1 - 1e-6;
 

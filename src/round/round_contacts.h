@@ -23,14 +23,17 @@ struct Obstacle {
 
 /// Where a ball or capsule is nearest to an obstacle, or will touch it. World frame.
 struct RoundContact {
-    std::size_t obstacle = 0;        ///< its index
-    int place = 0;                   ///< names it from step to step: which end, or the side; of several the how manyth
-    Vec3 point;                      ///< on the obstacle
-    Vec3 normal;                     ///< unit, out of the obstacle, or towards the side where it is pushed
+    std::size_t obstacle = 0; ///< its index
+    int place = 0; ///< names it from step to step: which end, or the side (2); + 3 for each further one; + `coming`
+    Vec3 point;    ///< on the obstacle
+    Vec3 normal;   ///< unit, out of the obstacle, or towards the side where it is pushed
     double distance = 0;             ///< negative: the depth
     std::uint32_t triangle = 0;      ///< of the mesh, index of its file
     std::array<int, 2> name{-1, -1}; ///< of a facet that is no mesh's
 };
+
+/// Added to the places of what is touched later.
+inline constexpr int coming = 1 << 20;
 
 /// Of each obstacle, the places where the distance of an end, or that of a capsule's side from edges and corners, is a
 /// local minimum of at most `reach` from the surface: the direction lies in the normal cone of what is there. The

@@ -4,6 +4,7 @@
 #include "mesh/vector.h"
 #include "round/axis.h"
 #include "round/lines.h"
+#include "shape/angle.h"
 
 #include <raycontact/query.h>
 
@@ -38,8 +39,7 @@ double angle_at(const Facet& f, unsigned on) {
     if (on == 7) return 2 * std::numbers::pi;
     if ((on & (on - 1)) != 0) return std::numbers::pi;
     const std::size_t k = on >> 1;
-    const Vec3 one = f.corner[(k + 1) % 3] - f.corner[k], two = f.corner[(k + 2) % 3] - f.corner[k];
-    return std::atan2(length(cross(one, two)), dot(one, two));
+    return corner_angles(f.corner)[k];
 }
 
 /// Of two at one place the face speaks: an edge may yet be a step.

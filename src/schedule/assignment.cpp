@@ -1,15 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "schedule/assignment.h"
 
+#include "contacts/round_pairs.h"
+
 #include <algorithm>
 #include <utility>
 
 namespace raycontact {
 
-void Assignment::assign(const OpenPairs& pairs, Balance& balance) {
+void Assignment::assign(const OpenPairs& pairs, std::span<const PlacedBody> bodies, bool has_rounds, Balance& balance) {
     pairs_ = &pairs;
-    if (alone()) return;
     const PairSlots& all = pairs.slots();
+    if (alone() && has_rounds) {
+        divide();
+        for (std::uint32_t slot = 0; slot < all.end(); ++slot)
+            if (all.is_open(slot) && is_round(bodies, all[slot])) take(slot);
+        return;
+    }
+    if (alone()) return;
     if (!all.changes().is_next(seen_)) {
         for (Own& own : parts_) own.open.clear();
         places_.clear();
@@ -17,7 +25,7 @@ void Assignment::assign(const OpenPairs& pairs, Balance& balance) {
     places_.resize(all.end());
     all.changes().each_since(seen_, all.end(), [&](std::uint32_t slot) {
         take(slot);
-        if (all.is_open(slot)) put(slot, balance.part_for_new_pair());
+        if (all.is_open(slot) && !is_round(bodies, all[slot])) put(slot, balance.part_for_new_pair());
     });
 }
 
@@ -34,19 +42,22 @@ void Assignment::take(std::uint32_t slot) noexcept {
     places_[slot] = {};
 }
 
-// The first part keeps its slots: what it knows of them stays.
-void Assignment::add_part() {
-    if (alone()) {
-        const PairSlots& all = pairs_->slots();
-        parts_.front().open = all;
-        places_.resize(all.end());
-        parts_.front().scene_slots.resize(all.end());
-        for (std::uint32_t slot = 0; slot < all.end(); ++slot) {
-            parts_.front().scene_slots[slot] = slot;
-            places_[slot] = all.is_open(slot) ? Place{0, slot} : Place{};
-        }
-        seen_ = all.changes().now();
+// The one part keeps its slots: what it knows of them stays.
+void Assignment::divide() {
+    const PairSlots& all = pairs_->slots();
+    parts_.front().open = all;
+    places_.resize(all.end());
+    parts_.front().scene_slots.resize(all.end());
+    for (std::uint32_t slot = 0; slot < all.end(); ++slot) {
+        parts_.front().scene_slots[slot] = slot;
+        places_[slot] = all.is_open(slot) ? Place{0, slot} : Place{};
     }
+    seen_ = all.changes().now();
+    divided_ = true;
+}
+
+void Assignment::add_part() {
+    if (alone()) divide();
     parts_.emplace_back();
 }
 
@@ -59,7 +70,7 @@ void Assignment::ask(Executor& executor, const PairList& asked) {
     ends_.assign(parts * slices, 0);
     const auto each = [&](std::uint32_t slice, auto&& work) {
         for (std::size_t i = slice * at_once; i < std::min(asked.size(), (slice + 1) * at_once); ++i)
-            work(i, places_[asked.slots[i]]);
+            if (const Place& place = places_[asked.slots[i]]; place.part != none) work(i, place);
     };
     executor.each(slices, 1, [&](std::uint32_t slice) {
         each(slice, [&](std::size_t, const Place& place) { ++ends_[place.part * slices + slice]; });

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A scene's state, saved and loaded: later steps repeat bit for bit.
+#include <raycontact/primitives.h>
 #include <raycontact/scene.h>
 
 #include "reference/meshes.h"
@@ -19,8 +20,9 @@ class Motion {
 public:
     explicit Motion(Scene& scene) : scene_(scene) {
         const auto ring = Shape::make(test::torus(12, 6, 0.5, 0.2, 0)),
-                   box = Shape::make(reference::box_mesh({0.4, 0.3, 0.5}));
-        for (int i = 0; i < 40; ++i) bodies_.push_back(scene_.add(i % 3 == 0 ? box : ring, pose(i, 0)));
+                   box = Shape::make(reference::box_mesh({0.4, 0.3, 0.5})), capsule = make_capsule(0.3, 0.4);
+        for (int i = 0; i < 40; ++i)
+            bodies_.push_back(scene_.add(i % 3 == 0 ? box : i % 5 == 1 ? capsule : ring, pose(i, 0)));
         scene_.set_filter(bodies_[3], 2, 0xffffffffu);
         scene_.set_static(bodies_[4], true);
         scene_.set_sensor(bodies_[5], true);
@@ -101,7 +103,7 @@ TEST_P(SavedState, RepeatsToTheBit) {
         const std::vector<BodyId> bodies = motion.bodies();
         const std::vector<std::byte> state = scene.save_state();
         const auto shapes = scene.shapes();
-        EXPECT_EQ(shapes.size(), 2u);
+        EXPECT_EQ(shapes.size(), 3u);
         std::vector<Told> expected;
         const auto go_on = [&](Scene& other, Motion& own) {
             std::vector<Told> told;

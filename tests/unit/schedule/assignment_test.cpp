@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "schedule/assignment.h"
 
+#include <raycontact/primitives.h>
+
 #include <algorithm>
 #include <array>
 #include <gtest/gtest.h>
@@ -18,11 +20,14 @@ std::vector<SlotPair> chain(BodySlot bodies) {
 
 class Assignments : public ::testing::Test {
 protected:
+    Assignments() {
+        for (PlacedBody& body : bodies) body.shape = box.get();
+    }
     void assign(const std::vector<SlotPair>& pairs) {
         open.step_done();
         assignment.step_done();
         open.set_all(executor, pairs);
-        assignment.assign(open, balance);
+        assignment.assign(open, bodies, std::ranges::any_of(bodies, is_ball), balance);
         assignment.ask(executor, open.all(executor));
     }
     std::size_t part_of(const SlotPair& pair) {
@@ -30,9 +35,12 @@ protected:
         const auto at = std::ranges::find(all.pairs, pair) - all.pairs.begin();
         return assignment.part_of(all.slots[static_cast<std::size_t>(at)]);
     }
+    static bool is_ball(const PlacedBody& body) { return body.shape->round() != nullptr; }
     std::size_t count_on(std::size_t part) const { return assignment.open_on(part).count(); }
 
     Executor executor{2};
+    std::shared_ptr<const Shape> box = make_box({1, 1, 1}), ball = make_ball(1);
+    std::vector<PlacedBody> bodies = std::vector<PlacedBody>(1000);
     OpenPairs open;
     Balance balance{Schedule::sticky, costs};
     Assignment assignment{3};
@@ -107,6 +115,30 @@ TEST_F(Assignments, AddAPartBesideTheOnlyOne) {
     assign(chain(25));
     EXPECT_EQ(count_on(0) + count_on(1), 25u);
     for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(part_of(all.pairs[i]), 0u);
+}
+
+// The first round body divides what the one part had by the slots of the scene; those stay for what it knows.
+TEST_F(Assignments, LeavePairsOfRoundBodiesOut) {
+    assignment = Assignment(1);
+    for (const std::size_t part : {1, 2}) balance.drop(part);
+    assign(chain(20));
+    const PairList all = open.all(executor);
+    bodies[22].shape = ball.get();
+    assign(chain(25));
+    EXPECT_EQ(count_on(0), 23u) << "22 is in two";
+    const PairList& asked = assignment.asked_of(0);
+    EXPECT_EQ(asked.pairs, assignment.all_on(0).pairs);
+    ASSERT_EQ(asked.size(), 23u);
+    for (std::size_t i = 0; i < asked.size(); ++i) {
+        EXPECT_FALSE(asked.pairs[i].first == 22 || asked.pairs[i].second == 22);
+        if (i < all.size()) {
+            EXPECT_EQ(asked.slots[i], all.slots[i]);
+        }
+    }
+    EXPECT_EQ(part_of({21, 22}), 0u);
+    assignment.forget();
+    assign(chain(25));
+    EXPECT_EQ(count_on(0), 23u) << "what begins anew leaves them out, too";
 }
 
 } // namespace

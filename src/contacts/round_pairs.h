@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include "executor/executor.h"
+#include "pairs/directed_pairs.h"
+#include "pairs/open_pairs.h"
+
+#include <raycontact/contact.h>
+#include <raycontact/settings.h>
+
+#include <span>
+#include <vector>
+
+namespace raycontact {
+
+/// Whether a pair is answered in closed form, on the host, and by no method.
+inline bool is_round(std::span<const PlacedBody> bodies, const SlotPair& pair) {
+    return bodies[pair.first].shape->round() != nullptr || bodies[pair.second].shape->round() != nullptr;
+}
+
+/// Pairs with a ball or capsule, and their contacts. What a round body meets is one surface to it: so a step that asks
+/// about one pair of it asks about all.
+class RoundPairs {
+public:
+    /// Lists those of a step. few: the pairs that the step asks about, which get the others of round bodies in them; or
+    /// null, if it asks about all.
+    void list(Executor& executor, std::span<const PlacedBody> bodies, OpenPairs& pairs, PairList* few);
+    /// None.
+    void clear() { pairs_.resize(0); }
+    /// Adds their contacts to those of other pairs, in order.
+    void run(Executor& executor, const Settings& settings, std::span<const PlacedBody> bodies,
+             std::vector<Contact>& contacts);
+    void trim();
+
+private:
+    /// A round body, and another of its pairs.
+    struct Meeting {
+        BodySlot round, other;
+        auto operator<=>(const Meeting&) const = default; // NOLINT(modernize-use-nullptr): of clang-tidy 14
+    };
+
+    std::vector<BodySlot> rounds_; ///< asked about
+    std::vector<char> is_asked_;   ///< by slot; all 0 between two steps
+    PairList pairs_;               ///< of those
+    std::vector<Meeting> meetings_;
+    std::vector<std::vector<Contact>> slices_;
+    std::vector<Contact> found_;
+};
+
+} // namespace raycontact
