@@ -126,7 +126,7 @@ Result simulate(const Work& work, std::uint32_t copies, const std::vector<double
         const std::size_t count = step.pairs.size();
         std::vector<std::size_t> parts(count);
         pairs.set_all(executor, step.pairs);
-        assignment.assign(pairs, balance);
+        assignment.assign(pairs, {}, false, balance);
         for (std::size_t m = 0; how == "balanced" && m + 1 < devices; ++m) {
             const auto move = balance.next_move();
             if (!move) break;

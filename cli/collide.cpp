@@ -83,7 +83,7 @@ Json to_json(const Vec3& p) {
 }
 
 const char* name_of(FeatureKind kind) {
-    constexpr const char* names[] = {"vertex", "edges", "inside", "vertex_face", "faces"};
+    constexpr const char* names[] = {"vertex", "edges", "inside", "vertex_face", "faces", "round"};
     return names[static_cast<std::size_t>(kind)];
 }
 

@@ -43,6 +43,8 @@ private:
         return {next.rotation, next.translation - rotated(next.rotation, body.shape->centre())};
     }
     double margin(BodySlot a, BodySlot b) const { return speculative_margin(settings_, bodies_[a], bodies_[b]); }
+    /// What counts as flush, however wide the margin is: a higher step is a wall.
+    double flush(BodySlot a, BodySlot b) const { return speculative_share * smaller_size(bodies_[a], bodies_[b]); }
 
     void find_round(BodySlot first, BodySlot second) {
         const auto [a, b] = std::minmax(first, second);
@@ -59,15 +61,14 @@ private:
         obstacles_.clear();
         for (const BodySlot other : others) {
             const PlacedBody& mesh = bodies_[other];
-            const double own = margin(slot, other);
-            reach = std::max(reach, own);
-            obstacles_.push_back(
-                {Facets(*mesh.shape), mesh.pose, ahead() ? next_of(mesh) : mesh.pose, !mesh.shape->has_inside(), own});
+            reach = std::max(reach, margin(slot, other));
+            obstacles_.push_back({Facets(*mesh.shape), mesh.pose, ahead() ? next_of(mesh) : mesh.pose,
+                                  !mesh.shape->has_inside(), flush(slot, other)});
         }
         round_contacts(*body.shape->round(), body.pose, ahead() ? std::optional(next_of(body)) : std::nullopt,
                        obstacles_, ahead() ? reach : 0, contacts_);
         for (const RoundContact& c : contacts_)
-            if (c.place >= coming || c.distance <= obstacles_[c.obstacle].margin)
+            if (c.place >= coming || c.distance <= margin(slot, others[c.obstacle]))
                 add(slot, others[c.obstacle], c, c.triangle);
     }
 
@@ -105,7 +106,7 @@ private:
 
 void RoundPairs::list(Executor& executor, std::span<const PlacedBody> bodies, OpenPairs& pairs, PairList* few) {
     rounds_.clear();
-    is_asked_.resize(bodies.size());
+    is_asked_.assign(bodies.size(), 0);
     const auto add = [&](BodySlot slot) {
         if (slot >= bodies.size() || bodies[slot].shape == nullptr || bodies[slot].shape->round() == nullptr) return;
         if (std::exchange(is_asked_[slot], 1) == 0) rounds_.push_back(slot);
@@ -117,7 +118,6 @@ void RoundPairs::list(Executor& executor, std::span<const PlacedBody> bodies, Op
         for (const SlotPair& pair : pairs.closed()) add(pair.first), add(pair.second);
     }
     pairs.list_of(executor, rounds_, is_asked_, pairs_);
-    for (const BodySlot slot : rounds_) is_asked_[slot] = 0;
     if (few == nullptr) return;
     PairList all;
     for (std::size_t i = 0, k = 0; i < few->size() || k < pairs_.size();) {

@@ -13,11 +13,6 @@
 
 namespace raycontact {
 
-/// Whether a pair is answered in closed form, on the host, and by no method.
-inline bool is_round(std::span<const PlacedBody> bodies, const SlotPair& pair) {
-    return bodies[pair.first].shape->round() != nullptr || bodies[pair.second].shape->round() != nullptr;
-}
-
 /// Pairs with a ball or capsule, and their contacts. What a round body meets is one surface to it: so a step that asks
 /// about one pair of it asks about all.
 class RoundPairs {
@@ -40,7 +35,7 @@ private:
     };
 
     std::vector<BodySlot> rounds_; ///< asked about
-    std::vector<char> is_asked_;   ///< by slot; all 0 between two steps
+    std::vector<char> is_asked_;   ///< by slot: is one of them
     PairList pairs_;               ///< of those
     std::vector<Meeting> meetings_;
     std::vector<std::vector<Contact>> slices_;

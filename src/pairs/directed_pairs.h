@@ -53,6 +53,11 @@ inline Pose centred_pose(const Shape& shape, const Pose& pose) {
 /// The box diagonal of the smaller body, metres: the size of the pair.
 double smaller_size(const PlacedBody& a, const PlacedBody& b);
 
+/// Whether a pair is answered in closed form, on the host, and by no method.
+inline bool is_round(std::span<const PlacedBody> bodies, const SlotPair& pair) {
+    return bodies[pair.first].shape->round() != nullptr || bodies[pair.second].shape->round() != nullptr;
+}
+
 /// How near two bodies have speculative contacts that do not hurry, metres.
 double speculative_margin(const Settings& settings, const PlacedBody& a, const PlacedBody& b);
 /// What stops a body at one end throws its other end, beyond where it goes, by up to this part of the pair's way: as

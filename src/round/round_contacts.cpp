@@ -2,7 +2,7 @@
 #include "round/round_contacts.h"
 
 #include "mesh/vector.h"
-#include "round/sweep.h"
+#include "round/first_touches.h"
 
 #include <algorithm>
 #include <array>
@@ -46,7 +46,7 @@ void round_contacts(const Round& round, const Pose& pose, const std::optional<Po
             passed[i] =
                 near[i].away > round.radius
                 && dot(surroundings.way(near[i].obstacle, near[i].at), near[i].normal) < round.radius - near[i].away;
-        if (!sweep(surroundings, touched)) passed.assign(near.size(), 0); // its end is not known
+        if (!find_first_touches(surroundings, touched)) passed.assign(near.size(), 0); // its end is not known
     }
     told.assign(touched.size(), 0);
     const auto index_of = [&](const FirstTouch& t) { return static_cast<std::size_t>(&t - touched.data()); };

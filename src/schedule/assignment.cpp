@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "schedule/assignment.h"
 
-#include "contacts/round_pairs.h"
-
 #include <algorithm>
 #include <utility>
 
@@ -11,10 +9,11 @@ namespace raycontact {
 void Assignment::assign(const OpenPairs& pairs, std::span<const PlacedBody> bodies, bool has_rounds, Balance& balance) {
     pairs_ = &pairs;
     const PairSlots& all = pairs.slots();
+    const auto goes_to_none = [&](std::uint32_t slot) { return has_rounds && is_round(bodies, all[slot]); };
     if (alone() && has_rounds) {
         divide();
         for (std::uint32_t slot = 0; slot < all.end(); ++slot)
-            if (all.is_open(slot) && is_round(bodies, all[slot])) take(slot);
+            if (all.is_open(slot) && goes_to_none(slot)) take(slot);
         return;
     }
     if (alone()) return;
@@ -25,7 +24,7 @@ void Assignment::assign(const OpenPairs& pairs, std::span<const PlacedBody> bodi
     places_.resize(all.end());
     all.changes().each_since(seen_, all.end(), [&](std::uint32_t slot) {
         take(slot);
-        if (all.is_open(slot) && !is_round(bodies, all[slot])) put(slot, balance.part_for_new_pair());
+        if (all.is_open(slot) && !goes_to_none(slot)) put(slot, balance.part_for_new_pair());
     });
 }
 

@@ -136,7 +136,8 @@ void add_rounds(std::span<const RoundPair> pairs, btScalar near_by, bool ahead) 
             is_field ? Facets(fields.emplace_back(static_cast<const btHeightfieldTerrainShape&>(*mesh.shape)))
                      : Facets(*mesh.converted.shape);
         obstacles.push_back(
-            {surface, to_pose(mesh.pose), to_pose(mesh.next), is_field || p.pair.is_two_sided(), double(p.margin)});
+            {surface, to_pose(mesh.pose), to_pose(mesh.next), is_field || p.pair.is_two_sided(),
+             speculative_share * double(p.pair.smaller_diagonal())}); // flush, however wide the margin is
     }
     const Leaf& ball = pairs[0].pair.other();
     const Round round = round_of(*ball.shape);

@@ -3,6 +3,7 @@
 
 #include <raycontact/mass.h>
 #include <raycontact/mesh.h>
+#include <raycontact/primitives.h>
 
 #include <xxhash.h>
 
@@ -41,19 +42,6 @@ Mesh turned(const std::vector<std::array<double, 2>>& rings, double low, double 
             mesh.triangles.push_back({ring(r, i), ring(r, i + 1), ring(r + 1, i + 1)});
             mesh.triangles.push_back({ring(r, i), ring(r + 1, i + 1), ring(r + 1, i)});
         }
-    }
-    return mesh;
-}
-
-Mesh box(const std::array<double, 4>& half) {
-    Mesh mesh;
-    for (std::uint32_t i = 0; i < 8; ++i)
-        mesh.vertices.push_back({i & 1 ? half[0] : -half[0], i & 2 ? half[1] : -half[1], i & 4 ? half[2] : -half[2]});
-    constexpr std::array<std::array<std::uint32_t, 4>, 6> faces{
-        {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}}};
-    for (const auto& [a, b, c, d] : faces) {
-        mesh.triangles.push_back({a, b, c});
-        mesh.triangles.push_back({a, c, d});
     }
     return mesh;
 }
@@ -101,8 +89,6 @@ Mesh mesh_of(const Geom& geom) {
     switch (geom.kind) {
     case Geom::Kind::height_field:
         return height_field(geom);
-    case Geom::Kind::box:
-        return box(geom.size);
     case Geom::Kind::cylinder: {
         const double radius = grown * geom.size[0], half = geom.size[1];
         return turned({{radius, -half}, {radius, half}}, -half, half, 1, 1);
@@ -120,6 +106,19 @@ Mesh mesh_of(const Geom& geom) {
     }
     std::vector<std::uint32_t> faces(geom.faces.begin(), geom.faces.end());
     return make_mesh(geom.vertices, faces, "geom");
+}
+
+std::shared_ptr<const Shape> make_shape(const Geom& geom) {
+    switch (geom.kind) {
+    case Geom::Kind::ball:
+        return make_ball(geom.size[0]);
+    case Geom::Kind::capsule:
+        return make_capsule(geom.size[0], geom.size[1]);
+    case Geom::Kind::box:
+        return make_box({geom.size[0], geom.size[1], geom.size[2]});
+    default:
+        return Shape::make(mesh_of(geom));
+    }
 }
 
 // MuJoCo puts a mesh's origin at the centre of mass that it computed, by default of a volume that concave meshes lack.
@@ -161,8 +160,7 @@ public:
                 return known->second->shape;
             }
         }
-        std::shared_ptr<const Shape> made =
-            Shape::make(mesh_of(geom)); // two threads may make it twice: both have the same
+        std::shared_ptr<const Shape> made = make_shape(geom); // two threads may make it twice: both have the same
         const std::scoped_lock lock(mutex_);
         if (const auto known = places_.find(key); known != places_.end()) return known->second->shape;
         used_.push_front({key, made});

@@ -496,15 +496,20 @@ def _contacts_of(a: _Objects, b: _Objects, i: NDArray[np.int64], j: NDArray[np.i
     ]
 
 
+_NO_INDEX = 2**32 - 1  # ContactFeature::no_index
+
+
 def _faces_in_contact(
     found: PairContacts, a: _Objects, b: _Objects, i: NDArray[np.int64], j: NDArray[np.int64]
 ) -> NDArray[np.int64]:
-    """(n, 2): of each contact a face of either mesh."""
+    """(n, 2): of each contact a face of either mesh, -1 of balls and capsules."""
     faces = found.indices.astype(np.int64)
-    is_edges = found.kind == FeatureKind.EDGES
+    is_edges, is_round = found.kind == FeatureKind.EDGES, found.kind == FeatureKind.ROUND
     faces[is_edges] //= 3  # an edge is named by its lowest triangle and a corner there
+    faces[is_round, found.source[is_round]] = -1  # a place on what has no faces
+    faces[faces == _NO_INDEX] = -1
     for side, (objects, rows) in enumerate(((a, i), (b, j))):
-        of_vertices = np.flatnonzero(~is_edges & (found.source == side))
+        of_vertices = np.flatnonzero(~is_edges & ~is_round & (found.source == side))
         of_vertices = of_vertices[np.argsort(rows[of_vertices], kind="stable")]
         for chosen in np.split(of_vertices, np.flatnonzero(np.diff(rows[of_vertices])) + 1):
             if len(chosen):

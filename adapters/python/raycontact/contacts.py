@@ -42,6 +42,7 @@ class FeatureKind(IntEnum):
     INSIDE: the whole body lies inside the other mesh; its deepest vertex stands for it.
     VERTEX_FACE: a vertex and a face that it is near or comes to, beside another contact of that vertex.
     FACES: a face of either body, of direction "weighted"; what the bodies share between them.
+    ROUND: a ball or capsule and the other body, in closed form.
     """
 
     VERTEX = 0
@@ -49,6 +50,7 @@ class FeatureKind(IntEnum):
     INSIDE = 2
     VERTEX_FACE = 3
     FACES = 4
+    ROUND = 5
 
 
 class Contacts:
@@ -94,14 +96,15 @@ class Contacts:
 
     @property
     def source(self) -> NDArray[np.uint8]:
-        """(n,) uint8: whose vertex it is, 0 is a and 1 is b; of edges 0."""
+        """(n,) uint8: whose vertex it is, or who is round: 0 is a and 1 is b; of edges, faces and two rounds 0."""
         return self.data["source"]
 
     @property
     def indices(self) -> NDArray[np.uint32]:
         """(n, 2) uint32: the feature on a and on b. Of the source a vertex of the mesh, of the other body the triangle
         that was hit; of edges an edge of either: 3 x its lowest triangle + its first corner there; of faces a triangle
-        of either."""
+        of either. Of a round source the place on it (ContactFeature in contact.h), of the other body the triangle, or
+        2^32 - 1 if it is round, too."""
         return self.data["indices"]
 
     @property

@@ -135,7 +135,7 @@ class Shape:
 
     @property
     def round(self) -> Optional[Round]:
-        """What `ball` and `capsule` made; None for meshes. Queries go by it, the mesh is a picture of it."""
+        """What `ball` and `capsule` made; None for meshes. Queries and contacts go by it; the mesh is a picture."""
         made = self._core.round
         return None if made is None else Round(np.array(made[0]), np.array(made[1]), made[2])
 
@@ -226,9 +226,9 @@ class Shape:
 def ball(radius: float) -> Shape:
     """A ball about the origin, radius in metres.
 
-    Queries take it as what it is, to rounding: its triangles are -1 there, and its vertices are a picture of it.
-    `contact_patches`, `collide` and scenes take meshes alone so far and raise InputError for it; so does a radius that
-    is not from 1e-6 to 1e8 m.
+    Queries and contacts take it as what it is, to rounding: in queries its triangles are -1, and its vertices are a
+    picture of it. `contact_patches` and `clash` take meshes alone and raise InputError for it; so does a radius that is
+    not from 1e-6 to 1e8 m.
     """
     return Shape._wrap(_core.make_ball(as_length(radius, "radius")))
 

@@ -343,6 +343,22 @@ TEST(RoundBodies, OfTwoThatMoveWhatMeetsIsTold) {
     EXPECT_GT(passed, 600);
 }
 
+TEST(RoundBodies, AStepIsAWallHoweverWideTheMargin) {
+    for (const double margin : {0.001, 0.05, 0.5}) {
+        Settings settings = settings_with(true);
+        settings.speculative_margin = margin;
+        Scene scene(settings);
+        scene.add(make_box({2, 2, 0.5}), at({0, 0, -0.5}));
+        const BodyId step = scene.add(make_box({1, 2, 0.5}), at({1, 0, -0.46}));
+        const double touch = std::sqrt(0.01 - 0.06 * 0.06); // along the floor, from the edge
+        const BodyId ball = scene.add(make_ball(0.1), at({-touch + 1e-3, 0.3, 0.1}));
+        scene.find_contacts();
+        double edge = 0;
+        for (const Contact& c : scene.contacts(step, ball)) edge = std::max(edge, double(-c.normal.x));
+        EXPECT_NEAR(edge, 0.8, 0.01) << margin;
+    }
+}
+
 TEST(RoundBodies, FastOnesAreStoppedByGroundWallsAndSheets) {
     Settings settings = settings_with(true);
     for (const ShapePtr& wall : {make_box({2, 2, 0.01}), Shape::make(sheet_mesh(4))}) {

@@ -18,6 +18,6 @@ struct FirstTouch {
 /// each time going on along what is touched, without friction or rebound. In closed form: the time at which an end or
 /// the axis, whose ends go straight, is so far from a face, edge or corner is the root of a polynomial. True if it
 /// has gone all the way.
-bool sweep(Surroundings& surroundings, std::vector<FirstTouch>& touched);
+bool find_first_touches(Surroundings& surroundings, std::vector<FirstTouch>& touched);
 
 } // namespace raycontact

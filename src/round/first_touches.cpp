@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "round/sweep.h"
+#include "round/first_touches.h"
 
 #include "mesh/vector.h"
 #include "round/lines.h"
@@ -178,7 +178,7 @@ std::vector<Spot> first_touched(const Surroundings& s, double radius, double& pa
 
 } // namespace
 
-bool sweep(Surroundings& s, std::vector<FirstTouch>& touched) {
+bool find_first_touches(Surroundings& s, std::vector<FirstTouch>& touched) {
     touched.clear();
     // What touches is as if it were on the surface: else it would be past what joins that at a small angle.
     double radius = s.round().radius;
