@@ -39,6 +39,15 @@ Json to_json(const std::optional<Value>& value) { // null: chosen by the library
     return value ? Json(*value) : Json(nullptr);
 }
 
+Json to_json(Speculative value) { // null as of an empty optional
+    return value == Speculative::automatic ? Json(nullptr) : Json(value == Speculative::on);
+}
+
+void read_if_there(const Json& document, const char* key, Speculative& value) {
+    if (const auto at = document.find(key); at != document.end() && !at->is_null())
+        value = at->get<bool>() ? Speculative::on : Speculative::off;
+}
+
 template <class Value>
 void read_if_there(const Json& document, const char* key, Value& value) {
     if (const auto at = document.find(key); at != document.end()) value = at->get<Value>();
@@ -133,7 +142,7 @@ void give_ids(std::uint32_t version, std::span<const BodyEvent> events, std::vec
 
 Bytes encode_info(const Info& info) {
     Settings settings = info.settings;
-    settings.speculative = settings.is_speculative();
+    settings.speculative = settings.is_speculative() ? Speculative::on : Speculative::off;
     Json document{{"format", "raycontact recording"},
                   {"version", format_version},
                   {"scene", info.scene},

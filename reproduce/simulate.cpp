@@ -35,7 +35,7 @@ scenes::SceneDescription described(const SimulationOptions& options) {
     how.steps = options.size.steps;
     how.seed = options.seed;
     how.settings = options.settings;
-    how.settings.speculative = options.speculative;
+    how.settings.speculative = options.speculative ? Speculative::on : Speculative::off;
     if (options.paper_response) how.response = paper_response();
     return options.scene == "rain" ? scenes::rain(how) : scenes::avalanche(how);
 }

@@ -254,7 +254,7 @@ void count_all() {
         Settings of = settings(Method::certified);
         of.features = features;
         if (features == Features::edges) Run(small, input, of).count(); // those of vertices are `certified`
-        of.speculative = true;
+        of.speculative = Speculative::on;
         Run(small, input + "_ahead", of).count();
     }
     // Every triangle for every ray; more of them would only be more of the same.

@@ -54,7 +54,7 @@ void sweep(const SeedOptions& options, const Progress& progress, std::vector<See
         scenes::SceneOptions how;
         how.bodies = options.bodies;
         how.seed = options.first + i;
-        how.settings.speculative = false;
+        how.settings.speculative = Speculative::off;
         scenes::Simulation simulation(scenes::avalanche(how));
         const scenes::RunLog& log = simulation.log();
         Settings standard;

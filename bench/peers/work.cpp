@@ -88,7 +88,7 @@ Work avalanche_work(const AvalancheWorkOptions& options) {
     scenes::SceneOptions how;
     how.bodies = options.bodies;
     how.seed = options.seed;
-    how.settings.speculative = false; // what the peers find, too, is in each other
+    how.settings.speculative = Speculative::off; // what the peers find, too, is in each other
     scenes::Simulation scene(scenes::avalanche(how));
     Work work;
     work.name = "avalanche";

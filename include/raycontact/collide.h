@@ -19,10 +19,15 @@ namespace raycontact {
 struct CollideOptions {
     Direction direction = Direction::reprojected; ///< what normals and depths are made of
     Features features = Features::edges;          ///< what can be in contact
-    std::uint32_t threads = 1;                    ///< 0: one per core
+    /// Metres, from 0 to 1e12: surfaces that are apart by up to this have contacts, too, with depth <= 0, minus the
+    /// gap.
+    double margin = 0;
+    std::uint32_t max_contacts_per_pair = 0; ///< those that stand for all, no more than this; 0: all
+    std::uint32_t threads = 1;               ///< 0: one per core
 };
 
-/// The contacts of two meshes, once, without a scene: those that a Scene with the two bodies would find, sorted alike.
+/// The contacts of two shapes, once, without a scene: those that a Scene with the two bodies at rest would find, sorted
+/// alike.
 /// `a` is body 0 and `b` body 1; normals point from a to b. Whoever asks about the same shapes step by step keeps a
 /// Scene. A thread keeps the memory that a question took, of shapes with few triangles, but neither shape. Safe to call
 /// from several threads. Throws InputError for a pose that is not finite and rigid, and for options that make no sense.

@@ -51,10 +51,10 @@ struct Touch {
     bool sensor = false; ///< one of them is a sensor: it has no contacts
 };
 
-/// Bodies with shapes and poses. It finds every contact between them where they are; it moves nothing. A step is one
-/// call of find_contacts(). Not thread-safe; use one scene per thread. All functions that take the id of a body throw
-/// InputError naming it where it is not in the scene; has() alone does not. Where the last device fails, those that say
-/// so throw std::runtime_error; the scene stays usable, and the next step tries again.
+/// Bodies with shapes and poses. It finds every contact between them where they are; it moves nothing, so a step is one
+/// call of find_contacts(), not of a step(). Not thread-safe; use one scene per thread. All functions that take the id
+/// of a body throw InputError naming it where it is not in the scene; has() alone does not. Where the last device
+/// fails, those that say so throw std::runtime_error; the scene stays usable, and the next step tries again.
 class RAYCONTACT_API Scene {
 public:
     /// Throws InputError for settings that make no sense or name a device this machine or this version cannot use, and

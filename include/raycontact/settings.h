@@ -33,6 +33,14 @@ enum class Features {
     edges,    ///< vertices and sharp edges: no two closed meshes can intersect unnoticed (docs/internals/edges.md)
 };
 
+/// Whether contacts are found before anything touches.
+enum class Speculative {
+    automatic, ///< as whoever owns the scene has it: a Scene of your own no, a Bullet dispatcher and `raycontact run`
+               ///< yes
+    off,       ///< no
+    on,        ///< yes
+};
+
 /// Of the smaller body's box diagonal: how near bodies have speculative contacts that do not hurry.
 inline constexpr double speculative_share = 0.0025;
 
@@ -44,13 +52,11 @@ struct Settings {
 
     /// Also finds contacts before anything touches, with depth <= 0: what lies nearer than a margin, and what will
     /// touch on its way to the next step, so that a solver stops bodies at the surface (docs/internals/speculative.md).
-    /// Empty: as whoever owns the scene has it; a Scene of your own: no; a Bullet CollisionDispatcher and `raycontact
-    /// run`: yes.
-    std::optional<bool> speculative;
+    Speculative speculative = Speculative::automatic;
     /// Metres: the margin. Empty: speculative_share of the smaller body's box diagonal.
     std::optional<double> speculative_margin;
-    /// `speculative`, and no where it is empty.
-    bool is_speculative() const noexcept { return speculative.value_or(false); }
+    /// `speculative`, and no where it is automatic.
+    bool is_speculative() const noexcept { return speculative == Speculative::on; }
     /// Of each pair the contacts that stand for all of them, no more than this (docs/conventions.md, Fewer contacts);
     /// at least the deepest. 0: all contacts. The rest is counted in StepStats.
     std::uint32_t max_contacts_per_pair = 0;

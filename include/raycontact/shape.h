@@ -4,9 +4,11 @@
 #include <raycontact/export.h>
 #include <raycontact/mesh.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 namespace raycontact {
 
@@ -30,6 +32,11 @@ public:
     /// prepare_mesh() and the other one.
     static std::shared_ptr<const Shape> make(const Mesh& mesh, std::uint32_t threads = 0);
 
+    /// What save() gave, of a mesh or a round shape, prepared if it was: the same to the bit in all that it answers.
+    /// Some tens of times faster than make() of the mesh; no bit depends on threads. Throws InputError for bytes that
+    /// save() did not give, that are damaged or not all there, or of another version of the library or kind of machine.
+    static std::shared_ptr<const Shape> load(std::span<const std::byte> bytes);
+
     ~Shape();
     Shape(const Shape&) = delete;
     Shape& operator=(const Shape&) = delete;
@@ -42,6 +49,10 @@ public:
     void prepare(std::uint32_t threads = 0) const;
     /// prepare() was done, by whomever.
     bool is_prepared() const noexcept;
+
+    /// The shape as bytes, with what prepare() made, if it did: some 70 a triangle. For load() by this version of the
+    /// library on this kind of machine (order of bytes); keep the mesh where others are to read it.
+    std::vector<std::byte> save() const;
 
     const std::string& name() const noexcept;  ///< the mesh's
     const MeshReport& report() const noexcept; ///< what the mesh is, and what was repaired

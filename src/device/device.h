@@ -112,7 +112,8 @@ struct OpenDevice {
 
 /// Opens one device of chosen_devices(). Throws InputError for a device that is unknown or that this version cannot
 /// use. threads: of the host, 0 for one per core. inexact: also opens a device whose bits differ from the others'.
-OpenDevice open_device(std::string_view name, std::uint32_t threads, bool inexact = false);
+OpenDevice open_device(std::string_view name, std::uint32_t threads, bool inexact = false,
+                       const TaskSystem& tasks = {});
 /// Opens all that chosen_devices() names; of "auto" the CPU alone.
 std::vector<OpenDevice> open_devices(const Settings& settings);
 /// Opens a device, if there is one. Throws as open_device().

@@ -90,12 +90,12 @@ std::vector<DeviceInfo> list_devices() {
     return devices;
 }
 
-OpenDevice open_device(std::string_view name, std::uint32_t threads, bool inexact) {
+OpenDevice open_device(std::string_view name, std::uint32_t threads, bool inexact, const TaskSystem& tasks) {
     // For tests and measurements; every instruction set gives the same bits.
     const char* wanted = std::getenv("RAYCONTACT_INSTRUCTION_SET");
     const std::string_view instruction_set = wanted ? wanted : "";
     const auto on_cpu = [&](int core) {
-        auto executor = std::make_unique<Executor>(threads, core);
+        auto executor = std::make_unique<Executor>(threads, core, Executor::Priority::normal, tasks);
         auto device = cpu::open(*executor, instruction_set, name);
         return OpenDevice{std::move(executor), std::move(device)};
     };
@@ -106,7 +106,7 @@ OpenDevice open_device(std::string_view name, std::uint32_t threads, bool inexac
         throw InputError("device '" + id.text() + "': this machine has " + std::to_string(usable_cores()) + " cores; "
                          + use_one_of("cpu/", usable_cores()));
     }
-    auto executor = std::make_unique<Executor>(threads);
+    auto executor = std::make_unique<Executor>(threads, -1, Executor::Priority::normal, tasks);
     return {std::move(executor), id.kind == "cuda" ? open_cuda(name, inexact) : open_opencl(name, inexact)};
 }
 
@@ -123,20 +123,21 @@ std::vector<OpenDevice> open_devices(const Settings& settings) {
     const Execution& how = settings.execution;
     std::vector<OpenDevice> opened;
     if (how.devices == automatic) {
-        opened.push_back(open_device("cpu", how.threads));
+        opened.push_back(open_device("cpu", how.threads, false, how.tasks));
         return opened;
     }
-    for (const std::string& id : chosen_devices(settings)) opened.push_back(open_device(id, how.threads, how.inexact));
+    for (const std::string& id : chosen_devices(settings))
+        opened.push_back(open_device(id, how.threads, how.inexact, how.tasks));
     return opened;
 }
 
 Opener gpu_opener(const Settings& settings) {
     const Execution& how = settings.execution;
     if (how.devices != automatic) return {};
-    return [threads = how.threads, inexact = how.inexact]() -> std::optional<OpenDevice> {
+    return [how]() -> std::optional<OpenDevice> {
         static const std::vector<std::string> gpus = every_gpu();
         if (gpus.empty()) return std::nullopt;
-        return open_device(gpus.front(), threads, inexact);
+        return open_device(gpus.front(), how.threads, how.inexact, how.tasks);
     };
 }
 

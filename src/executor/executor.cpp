@@ -5,6 +5,9 @@
 #include <raycontact/error.h>
 
 #include <algorithm>
+#include <exception>
+#include <mutex>
+#include <stdexcept>
 #include <string>
 #include <thread>
 #include <utility>
@@ -21,6 +24,47 @@ void check(std::uint32_t threads) {
         throw InputError("threads: " + std::to_string(threads) + " is too many; give at most "
                          + std::to_string(most_threads));
 }
+
+/// The threads of a TaskSystem.
+class TaskPool : public ThreadPool {
+public:
+    TaskPool(std::uint32_t threads, const TaskSystem& tasks) : most_(4 * std::uint64_t{threads}), tasks_(tasks) {}
+
+    void wake() override {} // they are the user's
+
+    void run(std::uint32_t count, std::uint32_t grain, SliceReference slice) override {
+        Work work{slice, count, std::max<std::uint64_t>(std::max(grain, 1u), (count + most_ - 1) / most_), {}, {}, {}};
+        const auto jobs = static_cast<std::uint32_t>((count + work.step - 1) / work.step);
+        tasks_.run(
+            tasks_.user, jobs, [](void* data, std::uint32_t i) { static_cast<Work*>(data)->run(i); }, &work);
+        if (work.done != jobs)
+            throw std::logic_error("Execution::tasks: run() returned after " + std::to_string(work.done.load()) + " of "
+                                   + std::to_string(jobs) + " jobs");
+        if (work.error) std::rethrow_exception(work.error);
+    }
+
+private:
+    struct Work {
+        SliceReference slice;
+        std::uint64_t count, step;
+        std::atomic<std::uint32_t> done;
+        std::mutex mutex; ///< of error
+        std::exception_ptr error;
+
+        void run(std::uint32_t i) {
+            const std::uint64_t begin = i * step, end = std::min(begin + step, count);
+            try {
+                slice(static_cast<std::uint32_t>(begin), static_cast<std::uint32_t>(end));
+            } catch (...) {
+                const std::lock_guard lock(mutex);
+                if (!error) error = std::current_exception();
+            }
+            ++done;
+        }
+    };
+    std::uint64_t most_; ///< jobs of one run
+    TaskSystem tasks_;
+};
 
 std::uint32_t number_of(std::uint32_t threads, int core) {
     check(threads);
@@ -54,9 +98,14 @@ void SliceReference::operator()(std::uint32_t begin, std::uint32_t end) const {
     }
 }
 
-Executor::Executor(std::uint32_t threads, int core, Priority priority)
-    : threads_(number_of(threads, core)), core_(core),
-      pool_(threads_ > 1 ? make_thread_pool(threads_, priority == Priority::low) : nullptr) {}
+Executor::Executor(std::uint32_t threads, int core, Priority priority, const TaskSystem& tasks)
+    : threads_(number_of(threads, core)), core_(core) {
+    if (threads_ == 1) return;
+    if (tasks.run != nullptr)
+        pool_ = std::make_unique<TaskPool>(threads_, tasks);
+    else
+        pool_ = make_thread_pool(threads_, priority == Priority::low);
+}
 
 void Executor::run_slices(std::uint32_t count, std::uint32_t grain, SliceReference slice) {
     if (count == 0) return;

@@ -4,6 +4,8 @@
 #include "interruption.h"
 #include "platform/system.h"
 
+#include <raycontact/execution.h>
+
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
@@ -23,7 +25,8 @@ struct SliceReference {
     void operator()(std::uint32_t begin, std::uint32_t end) const;
 };
 
-/// Two threads or more: oneTBB, or plain std::thread where a sanitizer must see every lock (RAYCONTACT_EXECUTOR=std).
+/// Two threads or more: a user's, oneTBB's, or plain std::thread where a sanitizer must see every lock
+/// (RAYCONTACT_EXECUTOR=std).
 class ThreadPool {
 public:
     virtual ~ThreadPool() = default;
@@ -57,8 +60,10 @@ class Executor {
 public:
     enum class Priority { normal, low };
     /// threads 0: one per core this process may use. Throws InputError for more than 1024. core >= 0: one thread,
-    /// pinned to that core (the system's number, see usable_core). low: others' work comes first.
-    explicit Executor(std::uint32_t threads, int core = -1, Priority priority = Priority::normal);
+    /// pinned to that core (the system's number, see usable_core). low: others' work comes first. tasks: whose threads
+    /// they are.
+    explicit Executor(std::uint32_t threads, int core = -1, Priority priority = Priority::normal,
+                      const TaskSystem& tasks = {});
 
     std::uint32_t threads() const { return threads_; }
     /// That each of so many tasks, run by this, may use itself: one, unless they are too few for all threads.

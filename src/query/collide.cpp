@@ -14,6 +14,11 @@ Settings settings_of(const CollideOptions& options) {
     settings.method = Method::standard; // nothing to keep for a next step
     settings.direction = options.direction;
     settings.features = options.features;
+    if (options.margin != 0) {
+        settings.speculative = Speculative::on;
+        settings.speculative_margin = options.margin;
+    }
+    settings.max_contacts_per_pair = options.max_contacts_per_pair;
     settings.execution.threads = options.threads;
     settings.execution.devices = "cpu";
     return settings;
@@ -24,7 +29,9 @@ struct Asked {
     explicit Asked(const CollideOptions& own) : options(own), scene(settings_of(own)) {}
 
     bool is_for(const CollideOptions& other) const {
-        return options.direction == other.direction && options.features == other.features && other.threads == 1;
+        return options.direction == other.direction && options.features == other.features
+               && options.margin == other.margin && options.max_contacts_per_pair == other.max_contacts_per_pair
+               && other.threads == 1;
     }
 
     CollideOptions options;
@@ -39,6 +46,8 @@ constexpr std::uint32_t most_questions = 1 << 20;
 
 std::vector<Contact> collide(const Shape& a, const Pose& pose_a, const Shape& b, const Pose& pose_b,
                              const CollideOptions& options) {
+    if (!(options.margin >= 0 && options.margin <= 1e12))
+        throw InputError("collide: the margin is not from 0 to 1e12 m");
     check_pose(pose_a, "pose of the first mesh");
     check_pose(pose_b, "pose of the second mesh");
     thread_local std::unique_ptr<Asked> kept;

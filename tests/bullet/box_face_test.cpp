@@ -112,7 +112,7 @@ std::array<int, 2> slide_over_the_rim(const Settings& settings) {
 
 TEST(BoxFace, SlidesOverTheRimWithoutAJump) {
     Settings touching;
-    touching.speculative = false;
+    touching.speculative = Speculative::off;
     const auto [by_face, by_batch] = slide_over_the_rim(touching);
     EXPECT_GT(by_face, 20);
     EXPECT_GT(by_batch, 20);

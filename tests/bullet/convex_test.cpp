@@ -256,7 +256,7 @@ TEST(Convex, SpeculativeContactsStopAMeshAtABox) {
     // A mesh at 60 m/s on a box of 5 cm: it moves by a metre in a step.
     for (const bool speculative : {false, true}) {
         Settings settings;
-        settings.speculative = speculative;
+        settings.speculative = speculative ? Speculative::on : Speculative::off;
         TestWorld w(settings);
         w.world.setGravity(btVector3(0, 0, 0));
         w.add(std::make_unique<btBoxShape>(btVector3(3, 3, btScalar(0.025))), 0, at(0, 0, 0));

@@ -126,7 +126,7 @@ TEST(Kinematic, AHandDoesNotPassWhatRests) {
         for (const double speed : {2.0, 5.0, 10.0, 20.0})
             EXPECT_EQ(passes_of_ten(speed, target, false), 0) << name << " at " << speed << " m/s";
     Settings without;
-    without.speculative = false;
+    without.speculative = Speculative::off;
     EXPECT_GT(passes_of_ten(20, targets[0].second, false, without), 0) << "else nothing is shown";
 }
 

@@ -170,7 +170,7 @@ TEST(Recommend, MeshesComeToRest) {
 
 TEST(Recommend, MeshesComeToRestWithoutSpeculativeContacts) {
     Settings settings;
-    settings.speculative = false;
+    settings.speculative = Speculative::off;
     const std::vector<Row> found = measure(settings);
     expect_rest(found);
     EXPECT_LT(found[1].shake, found[0].shake / 5);
@@ -198,7 +198,7 @@ TEST(Recommend, TheSlopGoesByTheSmallestBodyThatMoves) {
     EXPECT_NEAR(slop({.size = 0.5}), 0.5, 1e-6);
     EXPECT_NEAR(slop({.slop = 0.003, .size = 0.5}), 3, 1e-6);
     Settings without;
-    without.speculative = false;
+    without.speculative = Speculative::off;
     TestWorld other(without);
     bullet::recommend(other.world, {.size = 0.02});
     EXPECT_NEAR(1000 * double(other.world.getSolverInfo().m_linearSlop), 0.1, 1e-6);

@@ -83,7 +83,7 @@ TEST(Rest, TorusOnTiltedPlaneObject) {
 TEST(Rest, OnBulletsBox) {
     for (const bool speculative : {false, true}) {
         Settings settings;
-        if (!speculative) settings.speculative = false;
+        if (!speculative) settings.speculative = Speculative::off;
         TestWorld w(settings);
         w.add(std::make_unique<btBoxShape>(btVector3(3, 3, btScalar(0.5))), 0, at(0, 0, -0.5));
         expect_rest(w, w.add_mesh(table(), 5, at(0, 0, 0.6)), 0);

@@ -19,7 +19,7 @@ namespace {
 const Settings by_default;
 const Settings without = [] {
     Settings settings;
-    settings.speculative = false;
+    settings.speculative = Speculative::off;
     return settings;
 }();
 
@@ -302,7 +302,7 @@ TEST(Speculative, ABarComesToRestOnAPrism) {
 TEST(Speculative, NoDepthIsWithoutContact) {
     const auto prism = Shape::make(prism_mesh(6, 0.5, 0.2)), bar = Shape::make(box_mesh(1, 0.08, 0.02));
     Settings settings;
-    settings.speculative = true;
+    settings.speculative = Speculative::on;
     int touching = 0, near = 0;
     for (double depth = 1e-9; depth < 1e-5; depth *= 1.05) {
         Scene scene(settings);

@@ -55,7 +55,7 @@ TEST(Touches, AFallATurnAsleepAndALift) {
             for (const Add& body : bodies) {
                 if (&ground == &grounds[1] && &body != &bodies[0]) continue; // Bullet's own pairs
                 Settings settings;
-                settings.speculative = speculative;
+                settings.speculative = speculative ? Speculative::on : Speculative::off;
                 TestWorld w(settings);
                 w.world.getSolverInfo().m_linearSlop = btScalar(0.001);
                 ground(w);

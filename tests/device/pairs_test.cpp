@@ -90,7 +90,7 @@ public:
     }
     void expect(std::vector<Pose> next, double margin) {
         next_ = std::move(next);
-        settings_.speculative = true;
+        settings_.speculative = Speculative::on;
         settings_.speculative_margin = margin;
         world_.forget();
         changes_.forget();

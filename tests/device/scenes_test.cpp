@@ -70,7 +70,7 @@ std::string hash_of(const Crowd& crowd, Method method, Caster caster, const std:
                     Direction direction = Direction::reprojected, Features features = Features::vertices,
                     bool speculative = false) {
     Settings settings;
-    settings.speculative = speculative;
+    settings.speculative = speculative ? Speculative::on : Speculative::off;
     settings.features = features;
     settings.method = method;
     settings.paper.caster = caster;
@@ -183,7 +183,7 @@ TEST(scenes, have_one_list_of_pairs_whoever_finds_them) {
             if (asked == 1) scene->find_contacts(std::vector<Pair>{{bodies[0], bodies[1]}});
             if (asked == 2) {
                 Settings settings = scene->settings();
-                settings.speculative = !settings.speculative;
+                settings.speculative = settings.is_speculative() ? Speculative::off : Speculative::on;
                 scene->set_settings(settings);
             }
             scene->find_contacts();
@@ -290,7 +290,7 @@ std::vector<Contact> contacts_of_nested(Method method, const std::string& device
     Settings settings;
     settings.method = method;
     settings.features = Features::edges;
-    settings.speculative = speculative;
+    settings.speculative = speculative ? Speculative::on : Speculative::off;
     settings.execution.devices = device;
     settings.execution.threads = 2;
     Scene scene(settings);

@@ -50,7 +50,7 @@ inline Settings automatic(Method method, Features features, bool speculative = f
     Settings settings;
     settings.method = method;
     settings.features = features;
-    settings.speculative = speculative;
+    settings.speculative = speculative ? Speculative::on : Speculative::off;
     return settings;
 }
 

@@ -65,7 +65,7 @@ void change(Settings& settings, fuzz::Source& source) {
     settings.paper.max_iterations = source.get<std::uint16_t>();
     settings.max_contacts_per_pair = source.below(4) == 0 ? 1 + source.below(8) : 0;
     settings.max_contacts = source.below(4) == 0 ? 1 + source.below(64) : 0;
-    settings.speculative = source.below(4) == 0;
+    settings.speculative = source.below(4) == 0 ? Speculative::on : Speculative::off;
     settings.speculative_margin.reset();
     if (source.below(4) == 0) settings.speculative_margin = std::ldexp(1.0, -int(source.below(40)));
     settings.paper.displacement_threshold.reset();

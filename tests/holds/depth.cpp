@@ -19,7 +19,7 @@ bool is_in_box(const Shape& shape, const Vec3& p) {
 Settings plain() {
     Settings settings;
     settings.execution.threads = 1;
-    settings.speculative = false;
+    settings.speculative = Speculative::off;
     settings.method = Method::standard;
     return settings;
 }

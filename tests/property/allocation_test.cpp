@@ -206,7 +206,7 @@ void expect_nothing_left(Features features, const std::shared_ptr<const Shape>& 
         settings.execution.devices = "cpu"; // a trial of another allocates
         settings.execution.threads = 1;
         settings.features = features;
-        settings.speculative = speculative;
+        settings.speculative = speculative ? Speculative::on : Speculative::off;
         settings.speculative_margin = 0.02;
         std::uint64_t failures = 0;
         for (std::int64_t k = 0;; ++k) {

@@ -141,7 +141,7 @@ TEST(moved_bodies, a_step_finds_what_a_new_scene_finds) {
                 const auto& shapes = crowd_shapes(kind, 1);
                 Settings settings;
                 settings.method = method;
-                settings.speculative = margin.has_value();
+                settings.speculative = margin.has_value() ? Speculative::on : Speculative::off;
                 settings.speculative_margin = margin;
                 settings.execution.threads = method == Method::standard ? 2 : 1;
                 Twins twins(settings);
@@ -225,7 +225,7 @@ TEST(moved_bodies, a_margin_that_changes_holds_from_the_next_step) {
         for (const bool own : {false, true}) {
             Settings settings;
             settings.method = method;
-            settings.speculative = true;
+            settings.speculative = Speculative::on;
             settings.speculative_margin = 0.001;
             Scene scene(settings);
             const BodyId body = scene.add(cube, here);

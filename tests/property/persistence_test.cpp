@@ -74,7 +74,7 @@ Features move(std::size_t batches, double by, bool flush = false) {
     Features found;
     for (std::size_t batch = 0; batch < batches; ++batch) {
         Settings settings;
-        settings.speculative = true;
+        settings.speculative = Speculative::on;
         settings.speculative_margin = 0.03;
         Scene scene(settings);
         std::vector<Placement> placements;

@@ -27,7 +27,7 @@ namespace {
 Settings speculative_settings() {
     Settings settings;
     settings.execution.devices = "cpu";
-    settings.speculative = true;
+    settings.speculative = Speculative::on;
     settings.features = Features::vertices;
     return settings;
 }
@@ -294,7 +294,7 @@ TEST(Speculative, ChangesNothingThatTouchesAndNoThreadChangesIt) {
             settings.features = Features::edges;
             settings.method = method;
             settings.execution.threads = std::max(1u, threads);
-            settings.speculative = threads > 0;
+            settings.speculative = threads > 0 ? Speculative::on : Speculative::off;
             Scene scene(settings);
             const auto pairs = add_all(scene, beginnings(flights));
             for (std::size_t i = 0; i < flights.size(); ++i) {

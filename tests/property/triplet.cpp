@@ -50,7 +50,7 @@ Settings some_settings(Random& random) {
     settings.paper.skip_outside = random.below(4) != 0; // now and then every ray is cast
     settings.direction = directions[random.below(static_cast<std::uint32_t>(std::size(directions)))];
     settings.features = random.below(4) == 0 ? Features::edges : Features::vertices;
-    settings.speculative = random.below(4) == 0;
+    settings.speculative = random.below(4) == 0 ? Speculative::on : Speculative::off;
     return settings;
 }
 

@@ -40,7 +40,7 @@ std::unique_ptr<btCollisionDispatcher> make_dispatcher(Finder finder, bool specu
         Settings settings;
         settings.features = finder == Finder::edges ? Features::edges : Features::vertices;
         settings.execution.threads = 1;
-        settings.speculative = speculative;
+        settings.speculative = speculative ? Speculative::on : Speculative::off;
         return std::make_unique<bullet::CollisionDispatcher>(&configuration, settings);
     }
     auto dispatcher = std::make_unique<btCollisionDispatcher>(&configuration);

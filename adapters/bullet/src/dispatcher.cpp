@@ -52,7 +52,7 @@ bool is_whole(const btCollisionObjectWrapper& wrap) {
 }
 
 Settings with_defaults(Settings settings) {
-    settings.speculative = settings.speculative.value_or(true);
+    if (settings.speculative == Speculative::automatic) settings.speculative = Speculative::on;
     return settings;
 }
 
@@ -395,7 +395,7 @@ void CollisionDispatcher::forget(btCollisionWorld& world) {
     // Without speculative contacts a scene forgets where bodies went.
     const Settings settings = s.scene.settings();
     Settings plain = settings;
-    plain.speculative = false;
+    plain.speculative = Speculative::off;
     s.scene.set_settings(plain);
     for (int i = 0; i < 2; ++i) s.scene.find_contacts(std::span<const Pair>()); // the first has lost contacts
     s.scene.set_settings(settings);

@@ -35,7 +35,7 @@ private:
     };
     /// What is asked is whether two objects touch; nothing moves.
     static Settings touching(Settings settings) {
-        settings.speculative = false;
+        settings.speculative = Speculative::off;
         return settings;
     }
     std::vector<Placed> leaves_of(const btCollisionObjectWrapper& wrap);

@@ -69,7 +69,7 @@ struct PairScene {
     static Settings settings(const PairKey& key) {
         Settings settings;
         settings.direction = Direction::refined;
-        settings.speculative = key.speculative;
+        settings.speculative = key.speculative ? Speculative::on : Speculative::off;
         settings.max_contacts_per_pair = key.most;
         settings.execution.threads = 1;
         settings.execution.devices = "cpu";

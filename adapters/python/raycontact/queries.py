@@ -252,11 +252,12 @@ def collide(
     *,
     direction: str = "reprojected",
     features: str = "edges",
+    margin: float = 0.0,
     max_contacts_per_pair: int = 0,
     devices: str = "cpu",
     threads: int = 0,
 ) -> PairContacts:
-    """All contacts of two meshes, or of many pairs of them, once: those that a Scene with the bodies would find.
+    """All contacts of two shapes, or of many pairs of them, once: those that a Scene with the bodies would find.
 
     Normals point from a to b. `contacts.pair` says to which pair each contact belongs. To ask about the same bodies in
     many poses one after the other, keep a Scene.
@@ -267,11 +268,16 @@ def collide(
         pose_a and pose_b fit together as NumPy broadcasts; `contacts.pair` counts through the batch, last dimension
         first (`np.unravel_index`).
     direction, features, max_contacts_per_pair, devices: as of Scene.
+    margin: metres; surfaces that are apart by up to this have contacts, too, with depth <= 0, minus the gap.
     threads: 0 is one for each core; no bit depends on it.
     Raises InputError for poses that are not finite and rigid to 1e-4, where numbers of shapes and poses differ, and as
     Scene does for settings.
     """
-    if type(a) is Shape and type(b) is Shape and devices == "cpu" and threads == max_contacts_per_pair == 0:
+    metres = as_length(margin, "margin")
+    if not 0 <= metres <= 1e12:
+        raise InputError(f"margin: {metres:g} is not from 0 to 1e12 m")
+    quick = devices == "cpu" and threads == max_contacts_per_pair == metres == 0
+    if quick and type(a) is Shape and type(b) is Shape:
         one = _core.one_collide(a._core, pose_a, b._core, pose_b, direction, features)
         if one is not None:
             return PairContacts._from_bytes(one)
@@ -282,6 +288,8 @@ def collide(
             "features": features,
             "max_contacts_per_pair": max_contacts_per_pair,
             "devices": devices,
+            "speculative": metres > 0,
+            "speculative_margin": metres if metres > 0 else None,
         }
     )
     found = _core.collide(pairs.core, settings)

@@ -33,7 +33,10 @@ Settings settings_from(const nb::dict& words, Settings s) {
     set_word(words, "method", s.method, &method_from);
     set_word(words, "direction", s.direction, &direction_from);
     set_word(words, "features", s.features, &features_from);
-    set_if(words, "speculative", s.speculative);
+    if (words.contains("speculative")) {
+        const auto given = nb::cast<std::optional<bool>>(words["speculative"]);
+        s.speculative = !given ? Speculative::automatic : *given ? Speculative::on : Speculative::off;
+    }
     set_if(words, "speculative_margin", s.speculative_margin);
     set_if(words, "max_contacts_per_pair", s.max_contacts_per_pair);
     set_if(words, "max_contacts", s.max_contacts);

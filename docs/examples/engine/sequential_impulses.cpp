@@ -55,8 +55,8 @@ double least_speed(const raycontact::Contact& contact, double slop) {
 
 int main(int argc, char** argv) try {
     raycontact::Settings settings;
-    settings.speculative = true;        // contacts before anything touches
-    settings.max_contacts_per_pair = 8; // those that stand for all
+    settings.speculative = raycontact::Speculative::on; // contacts before anything touches
+    settings.max_contacts_per_pair = 8;                 // those that stand for all
     engine::Heap heap(argc, argv, settings);
     engine::Kept<Vec3> impulses;
 

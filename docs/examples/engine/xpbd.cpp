@@ -75,7 +75,7 @@ double least_gap(double gap) {
 
 int main(int argc, char** argv) try {
     raycontact::Settings settings;
-    settings.speculative = true;
+    settings.speculative = raycontact::Speculative::on;
     settings.speculative_margin = 2 * rest_offset;
     settings.max_contacts_per_pair = 8;
     engine::Heap heap(argc, argv, settings);

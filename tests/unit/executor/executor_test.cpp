@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <numeric>
 #include <stdexcept>
+#include <thread>
 #include <vector>
 
 namespace raycontact {
@@ -26,6 +27,41 @@ TEST(Executor, EveryIndexOnce) {
             for (const auto& times : seen) ASSERT_EQ(times, 1);
         }
     }
+}
+
+/// A job system: its threads take jobs in any order.
+struct Jobs {
+    std::atomic<int> runs = 0;
+    std::uint32_t leaves_out = 0; ///< jobs, which is a fault
+    TaskSystem system() {
+        return {[](void* user, std::uint32_t count, TaskSystem::Job job, void* data) {
+                    Jobs& own = *static_cast<Jobs*>(user);
+                    ++own.runs;
+                    std::vector<std::jthread> threads;
+                    for (std::uint32_t t = 0; t < 3; ++t)
+                        threads.emplace_back([&, t] {
+                            for (std::uint32_t i = t; i + own.leaves_out < count; i += 3) job(data, count - 1 - i);
+                        });
+                },
+                this};
+    }
+};
+
+TEST(Executor, RunsOnAUsersThreads) {
+    Jobs jobs;
+    Executor executor(3, -1, Executor::Priority::normal, jobs.system());
+    for (const std::uint32_t count : {0u, 1u, 5u, 1000u, 100003u}) {
+        std::vector<std::atomic<int>> seen(count);
+        executor.run(count, 16, [&](std::uint32_t begin, std::uint32_t end) {
+            for (std::uint32_t i = begin; i < end; ++i) ++seen[i];
+        });
+        for (const auto& times : seen) ASSERT_EQ(times, 1);
+    }
+    EXPECT_EQ(jobs.runs, 2) << "a piece alone is done at once";
+    EXPECT_THROW(executor.run(1000, 10, [](std::uint32_t, std::uint32_t) { throw std::runtime_error("slice"); }),
+                 std::runtime_error);
+    jobs.leaves_out = 1;
+    EXPECT_THROW(executor.run(1000, 10, [](std::uint32_t, std::uint32_t) {}), std::logic_error);
 }
 
 TEST(Executor, ThrowsWhatASliceThrows) {

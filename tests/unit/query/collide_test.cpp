@@ -100,5 +100,37 @@ TEST(Collide, RefusesAPoseThatIsNotRigid) {
     EXPECT_THROW(intersects(*box, at(NAN, 0, 0), *box, {}), InputError);
 }
 
+TEST(Collide, AMarginHasThoseThatAreNear) {
+    Random random(6);
+    int near = 0, far = 0;
+    for (int i = 0; i < 300; ++i) {
+        const Placement p = random_placement(pointers(closed_subjects()), random);
+        const Vec3 away = 0.3 * random.in_ball();
+        const Pose pose_b{p.pose_b.rotation, p.pose_b.translation + away};
+        const auto apart = distance(*p.a->shape, p.pose_a, *p.b->shape, pose_b)->distance;
+        if (apart == 0) continue;
+        EXPECT_TRUE(collide(*p.a->shape, p.pose_a, *p.b->shape, pose_b, {.margin = 0.99 * apart}).empty());
+        const auto found = collide(*p.a->shape, p.pose_a, *p.b->shape, pose_b, {.margin = 1.1 * apart});
+        ASSERT_FALSE(found.empty()) << i;
+        double least = 1e30;
+        for (const Contact& c : found) {
+            EXPECT_TRUE(c.is_speculative());
+            EXPECT_LE(-double(c.depth), 1.1 * apart * (1 + 1e-6));
+            least = std::min(least, -double(c.depth));
+        }
+        EXPECT_NEAR(least, apart, 0.1 * apart + 1e-6);
+        const auto some =
+            collide(*p.a->shape, p.pose_a, *p.b->shape, pose_b, {.margin = 2 * apart, .max_contacts_per_pair = 2});
+        EXPECT_LE(some.size(), 2u);
+        EXPECT_FALSE(some.empty());
+        (apart > 0.05 ? far : near) += 1;
+    }
+    EXPECT_GT(near, 10);
+    EXPECT_GT(far, 10);
+    const auto& shape = *closed_subjects()[0].shape;
+    for (const double margin : {-1.0, 1e13, std::nan("")})
+        EXPECT_THROW(collide(shape, {}, shape, {}, {.margin = margin}), InputError);
+}
+
 } // namespace
 } // namespace raycontact

@@ -61,7 +61,7 @@ protected:
         }
         Settings settings = scene_.settings();
         if (moves_ % 11 == 4) settings.speculative_margin = moves_ % 2 == 0 ? std::optional(0.05) : std::nullopt;
-        settings.speculative = settings.speculative_margin.has_value();
+        settings.speculative = settings.speculative_margin.has_value() ? Speculative::on : Speculative::off;
         if (moves_ % 11 == 4) scene_.set_settings(settings);
         if (moves_ % 5 == 1) scene_.find_contacts();
         if (moves_ % 5 == 3) scene_.find_contacts(std::vector<Pair>{{placed_[0].body, placed_[1].body}});

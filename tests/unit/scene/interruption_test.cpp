@@ -103,7 +103,7 @@ TEST(Interruption, ASceneGoesOn) {
     for (const bool speculative : {false, true})
         for (const std::uint32_t threads : {1u, 3u}) {
             Settings settings;
-            settings.speculative = speculative;
+            settings.speculative = speculative ? Speculative::on : Speculative::off;
             settings.execution.devices = "cpu";
             settings.execution.threads = threads;
             Scene scene(settings), calm(settings);

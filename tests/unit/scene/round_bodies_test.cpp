@@ -37,7 +37,7 @@ Pose anywhere(Random& random, double spread) {
 }
 Settings settings_with(bool speculative, const char* devices = "cpu") {
     Settings settings;
-    settings.speculative = speculative;
+    settings.speculative = speculative ? Speculative::on : Speculative::off;
     settings.execution.devices = devices;
     return settings;
 }

@@ -90,7 +90,7 @@ TEST(Settings, TheLargestAndSmallestLengthsFindTheSameContacts) {
             for (const double length : {0.0, 1e-300, 1e-30, 1e6, 1e12}) {
                 Settings settings;
                 settings.method = method;
-                settings.speculative = true;
+                settings.speculative = Speculative::on;
                 settings.paper.confidence = length > 1 ? 1e6 : 1;
                 set(settings, length);
                 const std::size_t found = touching(settings);

@@ -151,7 +151,7 @@ TEST_P(SavedState, RepeatsToTheBit) {
 Settings with(Method method, bool speculative, std::uint32_t most = 0, Direction direction = Direction::reprojected) {
     Settings settings;
     settings.method = method;
-    settings.speculative = speculative;
+    settings.speculative = speculative ? Speculative::on : Speculative::off;
     settings.max_contacts_per_pair = most;
     settings.direction = direction;
     return settings;

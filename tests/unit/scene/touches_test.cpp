@@ -83,7 +83,7 @@ TEST_F(TouchesOfBoxes, BeginOnceAndEndOnceApart) {
 // A solver with speculative contacts stops bodies at the surface: no contact ever has a depth.
 TEST_F(TouchesOfBoxes, SpeculativeContactsTouchWhenTheyWill) {
     Settings settings;
-    settings.speculative = true;
+    settings.speculative = Speculative::on;
     scene.set_settings(settings);
     const BodyId a = scene.add(box, at(0));
     const BodyId b = scene.add(box, at(1.05));
