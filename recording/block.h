@@ -17,7 +17,7 @@ constexpr std::uint32_t four_letters(const char (&text)[5]) {
 
 enum class BlockType : std::uint32_t {
     info = four_letters("INFO"),   ///< Info as JSON; the first block
-    shape = four_letters("SHAP"),  ///< one PreparedMesh; shapes count from 0 in the order of their blocks
+    shape = four_letters("SHAP"),  ///< a mesh, or measures of a round shape; shapes count from 0 in their blocks' order
     bodies = four_letters("BODY"), ///< bodies that come and go, before the steps they concern
     steps = four_letters("STEP"),  ///< poses and pairs of consecutive steps; decodable on its own
     end = four_letters("END "),    ///< the run's hash as JSON; the last block

@@ -132,7 +132,7 @@ void Reader::enter(const Block& block) {
         info_ = decode_info(unpack(block), version_);
         break;
     case BlockType::shape:
-        shapes_.push_back(Shape::make(decode_mesh(unpack(block))));
+        shapes_.push_back(decode_shape(unpack(block)));
         break;
     case BlockType::bodies:
         apply_events(unpack(block), shapes_.size(), events_, bodies_);

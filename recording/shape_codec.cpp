@@ -4,6 +4,7 @@
 #include "mesh/check.h"
 
 #include <raycontact/error.h>
+#include <raycontact/primitives.h>
 
 #include <algorithm>
 #include <cmath>
@@ -44,6 +45,9 @@ Vec3 get_vector(ByteSource& from) {
         throw Damage("has a coordinate too large");
     return v;
 }
+
+/// Of a round shape: radius and half length. A mesh takes more.
+constexpr std::size_t measures_size = 2 * sizeof(double);
 
 /// What is true or false of a mesh, a bit each. `checked` and `solid` are recorded as their opposites.
 constexpr std::pair<bool MeshReport::*, std::uint32_t> flags[] = {{&MeshReport::closed, 1},
@@ -119,6 +123,26 @@ PreparedMesh remade_mesh(const Shape& shape) {
         if (same_bits(shape, *Shape::make(mesh))) return mesh;
     }
     throw std::runtime_error("recording: the mesh '" + shape.name() + "' cannot be recorded to the bit");
+}
+
+Bytes encode_shape(const Shape& shape) {
+    const Round* const round = shape.round();
+    if (round == nullptr) return encode_mesh(remade_mesh(shape));
+    Bytes to;
+    put(to, round->radius);
+    put(to, round->to.z);
+    return to;
+}
+
+std::shared_ptr<const Shape> decode_shape(std::span<const unsigned char> bytes) {
+    if (bytes.size() != measures_size) return Shape::make(decode_mesh(bytes));
+    ByteSource from(bytes);
+    const double radius = from.get_double(), half_length = from.get_double();
+    try {
+        return half_length == 0 ? make_ball(radius) : make_capsule(radius, half_length);
+    } catch (const InputError& error) {
+        throw Damage(error.what());
+    }
 }
 
 Bytes encode_mesh(const PreparedMesh& mesh) {

@@ -247,7 +247,7 @@ Writer::~Writer() {
 }
 
 std::uint32_t Writer::add_shape(const Shape& shape) {
-    waiting_shapes_.push_back(encode_mesh(remade_mesh(shape)));
+    waiting_shapes_.push_back(encode_shape(shape));
     shapes_.push_back(shape.shared_from_this());
     return static_cast<std::uint32_t>(shapes_.size() - 1);
 }

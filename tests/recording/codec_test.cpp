@@ -2,6 +2,7 @@
 // Behind a right checksum may still be nonsense: decoders throw Damage, whatever the bytes.
 #include "sample.h"
 
+#include <raycontact/primitives.h>
 #include <recording/layout.h>
 #include <recording/shape_codec.h>
 #include <recording/step_codec.h>
@@ -42,6 +43,19 @@ TEST(Codec, MeshesFromNonsense) {
     EXPECT_NO_THROW(decode_mesh(payload));
     EXPECT_GT(refused(payload, 3000, [](const Bytes& bytes) { decode_mesh(bytes); }), 1000);
     EXPECT_THROW(decode_mesh({}), Damage);
+}
+
+TEST(Codec, RoundShapesAreTheirMeasures) {
+    for (const auto& shape : {make_ball(0.3), make_capsule(0.1, 2)}) {
+        const Bytes payload = encode_shape(*shape);
+        EXPECT_EQ(payload.size(), 16u);
+        const auto same = decode_shape(payload);
+        ASSERT_NE(same->round(), nullptr);
+        EXPECT_EQ(same->round()->radius, shape->round()->radius);
+        EXPECT_EQ(same->round()->to, shape->round()->to);
+        EXPECT_EQ(same->name(), shape->name());
+        EXPECT_GT(refused(payload, 1000, [](const Bytes& bytes) { decode_shape(bytes); }), 300);
+    }
 }
 
 TEST(Codec, StepsFromNonsense) {

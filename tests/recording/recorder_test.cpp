@@ -3,6 +3,7 @@
 #include "sample.h"
 
 #include <raycontact/error.h>
+#include <raycontact/primitives.h>
 #include <raycontact/recorder.h>
 #include <recording/replay.h>
 #include <scenes/models/procedural.h>
@@ -36,7 +37,8 @@ public:
     explicit Row(Method method) : scene(settings_of(method)) {}
 
     BodyId add() {
-        const BodyId id = scene.add(ball(), place(added_));
+        static const auto capsule = make_capsule(0.2, 0.1);
+        const BodyId id = scene.add(added_ % 4 == 3 ? capsule : ball(), place(added_));
         bodies.emplace_back(id, added_++);
         return id;
     }
