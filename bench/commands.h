@@ -3,12 +3,11 @@
 
 #include <CLI/CLI.hpp>
 
-// The subcommands of raycontact-bench. Each but the first five is in a file of its name.
+// The subcommands of raycontact-bench. Each but the first four is in a file of its name.
 namespace raycontact::bench {
 
 void add_peers(CLI::App& app);
 void add_growth(CLI::App& app);
-void add_sweep(CLI::App& app);
 void add_device(CLI::App& app);
 void add_roofline(CLI::App& app);
 void add_several(CLI::App& app);
