@@ -176,8 +176,8 @@ TEST(BenchPeers, BadUsage) {
 TEST(Bench, HelpNamesEveryBenchmark) {
     const Ran whole = run("--help", true);
     EXPECT_EQ(whole.status, 0);
-    for (const std::string name : {"peers", "growth", "device", "roofline", "several", "balance", "rays", "stacks",
-                                   "holds", "motion", "clash", "new-shape", "sleeping", "floor", "factory"}) {
+    for (const std::string name :
+         {"peers", "growth", "device", "rays", "stacks", "holds", "motion", "clash", "new-shape", "factory"}) {
         EXPECT_NE(whole.out.find("\n  " + name + " "), std::string::npos) << name;
         EXPECT_EQ(run(name + " --help", true).status, 0) << name;
         EXPECT_EQ(run(name + " --no-such-option", true).status, 2) << name;
@@ -271,27 +271,5 @@ TEST(BenchDevice, RefusesWhatItCannotDo) {
         const Ran ran = run("device --bodies 1 " + arguments, true);
         EXPECT_EQ(ran.status, 2) << arguments;
         EXPECT_EQ(std::count(ran.out.begin(), ran.out.end(), '\n'), 1) << ran.out;
-    }
-}
-
-TEST(BenchRoofline, CountsWhatTheKernelsDo) {
-    const Ran ran = run("roofline --bodies 8 --steps 90:94 --json");
-    ASSERT_EQ(ran.status, 0); // the counting kernels gave the CPU's bits
-    const Json rows = Json::parse(ran.out)["rows"];
-    ASSERT_EQ(rows.size(), 3u);
-    for (const Json& row : rows) {
-        const Json& cast = row["kinds"][0];
-        EXPECT_EQ(cast["rays"], "cast");
-        EXPECT_GE(cast["nodes"], 1); // the root, of each ray
-        // A node's planes and the corners of a block are read whole; the rest is less than as much again.
-        const double least = 384 * cast["nodes"].get<double>() + 576 * cast["blocks"].get<double>();
-        EXPECT_GE(cast["bytes_loaded"], least);
-        EXPECT_LT(cast["bytes_loaded"], 2 * least);
-        EXPECT_GT(row["floor_us_every_ray"], row["floor_us_once"]);
-        if (row["method"] == "standard") continue;
-        const Json& update = row["kinds"][1];
-        EXPECT_EQ(update["nodes"], 0);
-        EXPECT_GE(update["faces"], 1);
-        EXPECT_LT(update["operations"], cast["operations"]);
     }
 }
