@@ -3,16 +3,12 @@
 
 #include <CLI/CLI.hpp>
 
-// The subcommands of raycontact-bench. Each but the first five is in a file of its name.
+// The subcommands of raycontact-bench. Each is in a file of its name, where nothing else is said.
 namespace raycontact::bench {
 
 void add_peers(CLI::App& app);
-void add_growth(CLI::App& app);
-void add_sweep(CLI::App& app);
+void add_growth(CLI::App& app); ///< in peers.cpp
 void add_device(CLI::App& app);
-void add_roofline(CLI::App& app);
-void add_several(CLI::App& app);
-void add_balance(CLI::App& app);
 void add_queries(CLI::App& app);
 void add_rays(CLI::App& app);
 void add_stacks(CLI::App& app);
@@ -22,8 +18,6 @@ void add_clash(CLI::App& app);
 void add_scale(CLI::App& app);
 void add_threads(CLI::App& app);
 void add_new_shape(CLI::App& app);
-void add_sleeping(CLI::App& app);
-void add_floor(CLI::App& app);
 void add_factory(CLI::App& app);
 
 } // namespace raycontact::bench

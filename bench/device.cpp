@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// device and roofline: steps and kernels of each device, and what a ray must cost.
+// Steps and kernels of each device.
 #include "bench/commands.h"
 #include "bench/options.h"
 
 #include <bench/device/measure.h>
-#include <bench/device/roofline.h>
 #include <bench/peers/work.h>
 #include <raycontact/error.h>
 
@@ -19,22 +18,10 @@ namespace raycontact::bench {
 
 namespace {
 
-struct WorkCommand {
-    std::string recording, range = "200:260";
-    std::uint32_t bodies = 512;
-};
-
 struct DeviceCommand {
-    WorkCommand work;
-    std::string devices = "all", out;
+    std::string recording, range = "200:260", devices = "all", out;
+    std::uint32_t bodies = 512;
     DeviceOptions options;
-    bool json = false;
-};
-
-struct RooflineCommand {
-    WorkCommand work{"", "200:208", 512};
-    std::string caster = "bvh";
-    RooflineOptions options;
     bool json = false;
 };
 
@@ -48,7 +35,7 @@ std::pair<std::uint32_t, std::uint32_t> range_of(const std::string& text) {
     return {*first, *last};
 }
 
-Work make_work(const WorkCommand& command) {
+Work make_work(const DeviceCommand& command) {
     const auto [first, last] = range_of(command.range);
     const AvalancheWorkOptions options{.bodies = command.bodies, .first = first, .steps = last - first};
     Work work = command.recording.empty() ? avalanche_work(options) : recorded_work(command.recording, options);
@@ -58,26 +45,17 @@ Work make_work(const WorkCommand& command) {
     return work;
 }
 
-void add_work_options(CLI::App& command, WorkCommand& work) {
-    command
-        .add_option("--recording", work.recording,
-                    "poses and pairs (run --record); without: an avalanche, simulated beforehand")
-        ->type_name("FILE");
-    command.add_option("--steps", work.range, "its steps A to B - 1")->type_name("A:B")->capture_default_str();
-    add_number(command, "--bodies", work.bodies, "of the avalanche", 1u, 1'000'000u);
-}
-
 void bench_device(DeviceCommand command) {
     DeviceOptions& options = command.options;
     Settings settings;
     settings.method = Method::standard;
     settings.execution.devices = command.devices;
     options.devices = chosen_devices(settings);
-    options.first = range_of(command.work.range).first;
+    options.first = range_of(command.range).first;
 
     Output out(command.out, {"device"}, {".csv"});
     tell("poses and pairs");
-    const Work work = make_work(command.work);
+    const Work work = make_work(command);
     const DeviceResults results = measure_devices(work, options, tell);
     if (!out.finish(!results.results.empty())) return;
     out.print(command.json, table(work, options, results), json(work, options, results));
@@ -87,29 +65,18 @@ void bench_device(DeviceCommand command) {
         throw std::runtime_error("a device failed or gave other bits than the CPU; this must not be");
 }
 
-void bench_roofline(RooflineCommand command) {
-    RooflineOptions& options = command.options;
-    if (std::ranges::find(options.methods, Method::certified) != options.methods.end())
-        throw InputError("--methods: certified casts what standard casts on a device with memory of its own; ask for "
-                         "standard");
-    options.caster = caster_from(command.caster);
-    Output out("", {});
-    tell("poses and pairs");
-    const Work work = make_work(command.work);
-    const std::vector<RooflineRow> rows = count_roofline(work, options, tell);
-    out.finish();
-    out.print(command.json, table(work, options, rows), json(work, options, rows));
-    if (!std::ranges::all_of(rows, &RooflineRow::agrees))
-        throw std::runtime_error("the counting kernels gave other bits than the CPU's; this must not be");
-}
-
 } // namespace
 
 void add_device(CLI::App& app) {
     CLI::App* command =
         app.add_subcommand("device", "Whole steps and single kernels on each device, beside the CPU's contacts");
     auto c = std::make_shared<DeviceCommand>();
-    add_work_options(*command, c->work);
+    command
+        ->add_option("--recording", c->recording,
+                     "poses and pairs (run --record); without: an avalanche, simulated beforehand")
+        ->type_name("FILE");
+    command->add_option("--steps", c->range, "its steps A to B - 1")->type_name("A:B")->capture_default_str();
+    add_number(*command, "--bodies", c->bodies, "of the avalanche", 1u, 1'000'000u);
     command->add_option("--devices", c->devices, "each measured alone: all (every GPU, or the CPU), or a list")
         ->type_name("LIST")
         ->capture_default_str();
@@ -127,22 +94,6 @@ void add_device(CLI::App& app) {
     command->footer("Single kernels are timed in a run of their own, each waited for, by the device's clock.\n"
                     "Exit status: 0 fine, 1 a device failed or its contacts are not the CPU's, 2 bad usage or input.");
     command->callback([c] { bench_device(*c); });
-}
-
-void add_roofline(CLI::App& app) {
-    CLI::App* command =
-        app.add_subcommand("roofline", "Bytes and operations of a ray, counted, and the least time they need");
-    auto c = std::make_shared<RooflineCommand>();
-    add_work_options(*command, c->work);
-    add_values(*command, "--methods", c->options.methods, method_from, "standard,iterative,predictive; without: all");
-    command->add_option("--caster", c->caster, "bvh or basic")->type_name("WORD")->capture_default_str();
-    add_number(*command, "--gb-per-s", c->options.peak.gb_per_s, "of the device's memory (an H200's data sheet)", 1e-3,
-               1e9)
-        ->type_name("GB/S");
-    add_number(*command, "--tflops", c->options.peak.tflops, "of the device, float32 (an H200's data sheet)", 1e-3, 1e9)
-        ->type_name("TFLOPS");
-    add_json(*command, c->json);
-    command->callback([c] { bench_roofline(*c); });
 }
 
 } // namespace raycontact::bench

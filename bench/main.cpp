@@ -7,9 +7,8 @@ namespace {
 
 void add_benchmarks(CLI::App& app) {
     using namespace raycontact::bench;
-    for (const auto add : {add_peers, add_growth, add_sweep, add_device, add_roofline, add_several, add_balance,
-                           add_queries, add_rays, add_stacks, add_holds, add_motion, add_clash, add_scale, add_threads,
-                           add_new_shape, add_sleeping, add_floor, add_factory})
+    for (const auto add : {add_peers, add_growth, add_device, add_queries, add_rays, add_stacks, add_holds, add_motion,
+                           add_clash, add_scale, add_threads, add_new_shape, add_factory})
         add(app);
 }
 

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// peers, growth and sweep: what contacts cost elsewhere, at other sizes and with other thresholds.
+// peers and growth: what contacts cost elsewhere, and at other sizes.
 #include "bench/commands.h"
 #include "bench/options.h"
 
 #include <bench/peers/contest.h>
 #include <bench/peers/growth.h>
 #include <bench/peers/motion.h>
-#include <bench/peers/seeds.h>
-#include <bench/peers/thresholds.h>
 #include <raycontact/error.h>
 
 #include <algorithm>
@@ -30,16 +28,6 @@ struct PeersOptions {
     AvalancheWorkOptions avalanche;
     // While the pile still lands and spreads (median speed 2.1 m/s at the first, 0.1 m/s at the last of 512 bodies).
     std::uint32_t moving_first = 60, moving_steps = 100;
-    bool json = false;
-};
-
-struct SweepCommand {
-    std::string recording, out;
-    std::vector<std::string> only;
-    std::uint32_t first = 0, steps = 600, swarm_steps = 120, bodies = 512, triangles = 20'000;
-    std::uint64_t seed = 1;
-    std::uint32_t seeds = 5;
-    ThresholdOptions thresholds;
     bool json = false;
 };
 
@@ -145,63 +133,6 @@ void bench_growth(const GrowthCommand& command) {
     out.keep();
 }
 
-std::vector<MakeWork> choose_sweeps(const SweepCommand& command) {
-    const AvalancheWorkOptions steps{
-        .bodies = command.bodies, .first = command.first, .steps = command.steps, .seed = command.seed};
-    if (!command.recording.empty()) return {[=] { return recorded_work(command.recording, steps); }};
-    const SwarmOptions swarm{.steps = command.swarm_steps, .triangles = command.triangles, .seed = command.seed};
-    return {[=] { return avalanche_work(steps); }, [=] { return swarm_work(swarm); }};
-}
-
-void bench_sweep(const SweepCommand& command) {
-    if (!command.recording.empty() && !command.only.empty() && chosen(command.only, "seeds"))
-        throw InputError("--only seeds: simulates its avalanches itself; give no recording");
-    Output out(command.out, {"sweep-thresholds", "sweep-seeds"});
-    Json notes = Json::array();
-    std::vector<ThresholdRow> thresholds;
-    std::vector<SeedRow> seeds;
-    if (chosen(command.only, "thresholds")) {
-        until_stopped([&] {
-            for (const MakeWork& make : choose_sweeps(command)) {
-                tell("poses and pairs");
-                const Work work = make();
-                const std::vector<ThresholdRow> some = sweep_thresholds(work, command.thresholds, tell);
-                notes.push_back(note_of(work));
-                thresholds.insert(thresholds.end(), some.begin(), some.end());
-            }
-        });
-    }
-    if (command.recording.empty() && chosen(command.only, "seeds"))
-        seeds = sweep_seeds({command.seed, command.seeds, command.bodies, command.steps}, tell);
-    if (!out.finish(!thresholds.empty() || !seeds.empty())) return;
-    std::string text;
-    if (!thresholds.empty()) text += table(notes, thresholds);
-    if (!thresholds.empty() && !seeds.empty()) text += '\n';
-    if (!seeds.empty()) text += table(seeds);
-    const Json rows = json_list(thresholds), seed_rows = json_list(seeds);
-    std::vector<Reduction> reduced = reductions(seeds);
-    std::erase_if(reduced, [](const Reduction& r) { return r.of_seeds.empty(); });
-    out.print(command.json, text,
-              {{"works", notes},
-               {"thresholds", rows},
-               {"verdicts", json_list(verdicts(thresholds))},
-               {"seeds", seed_rows},
-               {"reductions", json_list(reduced)}});
-    if (!thresholds.empty()) {
-        out.write("sweep-thresholds", ".csv",
-                  csv(out.machine, std::string(threshold_columns) + count_columns, rows, notes));
-        out.write("sweep-thresholds", ".svg", chart(notes, thresholds));
-    }
-    if (!seeds.empty()) {
-        out.write("sweep-seeds", ".csv", csv(out.machine, std::string(seed_columns) + count_columns, seed_rows));
-        out.write("sweep-seeds", ".svg", chart(seeds));
-    }
-    out.keep();
-    const auto is_wrong = [](const auto& row) { return row.method == Method::certified && row.wrong.total() > 0; };
-    if (std::ranges::any_of(thresholds, is_wrong) || std::ranges::any_of(seeds, is_wrong))
-        throw std::runtime_error("certified gave other contacts than standard; this must not be");
-}
-
 } // namespace
 
 void add_peers(CLI::App& app) {
@@ -252,30 +183,6 @@ void add_growth(CLI::App& app) {
     add_number(*command, "--threads", c->options.threads, "0: one per core", 0u, 1024u);
     add_json(*command, c->json);
     command->callback([c] { bench_growth(*c); });
-}
-
-void add_sweep(CLI::App& app) {
-    CLI::App* command = app.add_subcommand(
-        "sweep", "Every displacement threshold, and the library's choice: time, and rays that are wrong");
-    auto c = std::make_shared<SweepCommand>();
-    command
-        ->add_option("recording", c->recording,
-                     "poses and pairs (run --record); without: an avalanche, and a few fast, large bodies")
-        ->type_name("RECORDING");
-    add_out(*command, "--out", c->out, "write DIR/<machine>/sweep-thresholds-<date>.csv and .svg, sweep-seeds too")
-        ->type_name("DIR");
-    add_words(*command, "--only", c->only, {"thresholds", "seeds"}, "parts: thresholds,seeds");
-    add_number(*command, "--first", c->first, "first step of the thresholds' avalanche or recording", 0u, 1'000'000u);
-    add_number(*command, "--steps", c->steps, "of each avalanche, or of the recording", 1u, 1'000'000u);
-    add_number(*command, "--swarm-steps", c->swarm_steps, "of the few, fast bodies", 1u, 1'000'000u);
-    add_number(*command, "--bodies", c->bodies, "of each avalanche", 1u, 1'000'000u);
-    add_number(*command, "--triangles", c->triangles, "of each fast body; even", 60u, 1'000'000u);
-    add_number(*command, "--seed", c->seed, "first seed", std::uint64_t{0}, ~std::uint64_t{0} >> 1);
-    add_number(*command, "--seeds", c->seeds, "avalanches of the part seeds", 1u, 1000u);
-    add_number(*command, "--values", c->thresholds.values, "fixed thresholds, 1e-4 to 1e-1 of the size", 1u, 100u);
-    add_number(*command, "--runs", c->thresholds.runs, "of all settings in turn; times are medians", 1u, 1000u);
-    add_json(*command, c->json);
-    command->callback([c] { bench_sweep(*c); });
 }
 
 } // namespace raycontact::bench

@@ -54,8 +54,5 @@ void until_stopped(Do work) {
 void add(StepStats& sums, const StepStats& step);
 /// What a method of ours did and got wrong.
 void put_counts(Json& row, const StepStats& sums, const recording::WrongRays& wrong);
-inline constexpr const char* count_columns =
-    ",rays,rays_cast,walks,walks_lost,walk_casts,predictions,pairs_full,pairs_skipped,pair_bytes,contacts,missed,"
-    "invented,other_triangle,wrong,rays_compared,contacts_compared";
 
 } // namespace raycontact::bench

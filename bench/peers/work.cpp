@@ -15,7 +15,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <utility>
 
@@ -50,17 +49,6 @@ Pace pace(const Work& work) {
     return {median(moved), *std::max_element(moved.begin(), moved.end())};
 }
 
-double body_size(const Work& work) {
-    double size = std::numeric_limits<double>::infinity();
-    for (std::uint32_t body = 0; body < work.body_shape.size(); ++body) {
-        const bool moves = std::any_of(work.steps.begin(), work.steps.end(), [&](const WorkStep& step) {
-            return step.poses[body] != work.steps.front().poses[body];
-        });
-        if (moves || work.steps.size() == 1) size = std::min(size, size_of(work.shape(body)));
-    }
-    return std::isfinite(size) ? size : size_of(*work.shapes.front());
-}
-
 std::shared_ptr<const Shape> bench_mesh(std::uint32_t triangles, std::string& source) {
     scenes::Model model = scenes::scene_model("bunny", triangles);
     // The usual stand-in has a hole, and so half a percent fewer vertices for its triangles.
@@ -87,7 +75,6 @@ std::shared_ptr<const Shape> one_metre_mesh(const std::filesystem::path& file) {
 Work avalanche_work(const AvalancheWorkOptions& options) {
     scenes::SceneOptions how;
     how.bodies = options.bodies;
-    how.seed = options.seed;
     how.settings.speculative = Speculative::off; // what the peers find, too, is in each other
     scenes::Simulation scene(scenes::avalanche(how));
     Work work;

@@ -19,9 +19,6 @@ struct Pace {
 };
 Pace pace(const Work& work);
 
-/// Of the smallest shape that moves, metres.
-double body_size(const Work& work);
-
 /// The reduced bunny of that many triangles where it can be made, else a closed bumpy sphere; says which in `source`.
 std::shared_ptr<const Shape> bench_mesh(std::uint32_t triangles, std::string& source);
 
@@ -33,7 +30,6 @@ struct AvalancheWorkOptions {
     std::uint32_t first = 200; ///< step
     std::uint32_t steps = 200; ///< from there on
     std::uint32_t stride = 20; ///< see Work
-    std::uint64_t seed = 1;
 };
 
 /// Steps of the scene avalanche, simulated here and now; its pairs by our own broad phase.

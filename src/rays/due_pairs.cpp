@@ -16,8 +16,8 @@ constexpr double unhurried = 0.0025; // a step: rays may go on from triangle to 
 // Share of the swept clearance's radius a step: faster pairs seek no swept clearances.
 constexpr double slow = 0.15;
 
-// How far beyond the bounds a new list reaches: the way of some steps, between the lengths that `bench sweep` found
-// best for a pile and for fast bodies.
+// How far beyond the bounds a new list reaches: the way of some steps, between the lengths that were best for
+// a pile and for fast bodies (bench/log.md, entry 15).
 double reach_of_lists(double size, double speed) {
     return std::max(0.015 * size,
                     std::min(0.027 * size, 24 * speed)); // this order of arguments also works for a NaN speed

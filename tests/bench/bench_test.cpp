@@ -166,8 +166,7 @@ TEST(BenchPeers, BadUsage) {
     for (const char* arguments :
          {"", "peers --only nobody", "peers --works nothing", "peers --mesh /no/such.obj",
           "peers --works avalanche --recording /no/such.glb", "peers --runs 0", "growth --pairs 0", "growth --steps 0",
-          "growth --threads=-1", "growth --only nothing", "growth --out ''", "device --out ''", "peer",
-          "sweep --only nothing", "sweep /no/such.glb", "sweep /no/such.glb --only seeds", "sweep --values 0"}) {
+          "growth --threads=-1", "growth --only nothing", "growth --out ''", "device --out ''", "peer"}) {
         const Ran ran = run(arguments, true);
         EXPECT_EQ(ran.status, 2) << arguments << ": " << ran.out;
         EXPECT_EQ(std::count(ran.out.begin(), ran.out.end(), '\n'), 1) << arguments << ": " << ran.out;
@@ -177,8 +176,8 @@ TEST(BenchPeers, BadUsage) {
 TEST(Bench, HelpNamesEveryBenchmark) {
     const Ran whole = run("--help", true);
     EXPECT_EQ(whole.status, 0);
-    for (const std::string name : {"peers", "growth", "sweep", "device", "roofline", "several", "balance", "rays",
-                                   "stacks", "holds", "motion", "clash", "new-shape", "sleeping", "floor", "factory"}) {
+    for (const std::string name :
+         {"peers", "growth", "device", "rays", "stacks", "holds", "motion", "clash", "new-shape", "factory"}) {
         EXPECT_NE(whole.out.find("\n  " + name + " "), std::string::npos) << name;
         EXPECT_EQ(run(name + " --help", true).status, 0) << name;
         EXPECT_EQ(run(name + " --no-such-option", true).status, 2) << name;
@@ -219,63 +218,6 @@ TEST(BenchGrowth, EveryPart) {
     EXPECT_NE(content(file_with(folder.path, "growth-", ".csv")).find("triangles,316"), std::string::npos);
     EXPECT_TRUE(content(file_with(folder.path, "growth-", ".svg")).starts_with("<svg"));
     EXPECT_FALSE(Json::parse(ran.out)["slopes"].empty());
-}
-
-TEST(BenchSweep, BothPartsWithoutARecording) {
-    const Folder folder;
-    const Ran ran =
-        run("sweep --bodies 8 --steps 50 --swarm-steps 8 --triangles 400 --values 3 --runs 1 --seeds 2 --json "
-            "--out \""
-            + folder.path.string() + "\"");
-    ASSERT_EQ(ran.status, 0);
-    const Json out = Json::parse(ran.out);
-    ASSERT_EQ(out["works"].size(), 2u);
-    EXPECT_EQ(out["works"][1]["work"], "swarm");
-    EXPECT_EQ(out["verdicts"].size(), 6u);
-
-    const std::vector<Row> thresholds = table_of(content(file_with(folder.path, "sweep-thresholds-", ".csv")));
-    ASSERT_EQ(thresholds.size(), 2 * (1 + 3 * (3 + 1u)));
-    std::map<std::string, int> chosen;
-    for (const Row& row : thresholds) {
-        expect_whole(row);
-        const bool exact = row.at("method") == "certified" || row.at("method") == "standard";
-        EXPECT_TRUE(!exact || row.at("wrong") == "0") << row.at("method");
-        if (row.at("threshold") == "auto") ++chosen[row.at("method")];
-        EXPECT_GT(std::stod(row.at("us_per_step")), 0);
-    }
-    EXPECT_EQ(chosen, (std::map<std::string, int>{{"certified", 2}, {"iterative", 2}, {"predictive", 2}}));
-    const std::string svg = content(file_with(folder.path, "sweep-thresholds-", ".svg"));
-    EXPECT_NE(svg.find("stroke-dasharray"), std::string::npos);
-
-    const std::vector<Row> seeds = table_of(content(file_with(folder.path, "sweep-seeds-", ".csv")));
-    ASSERT_EQ(seeds.size(), 2 * 7u);
-    for (const Row& row : seeds) {
-        expect_whole(row);
-        EXPECT_TRUE(row.at("method") != "certified" || row.at("wrong") == "0");
-    }
-    EXPECT_TRUE(content(file_with(folder.path, "sweep-seeds-", ".svg")).starts_with("<svg"));
-}
-
-TEST(BenchSweep, ARecording) {
-    const Folder folder;
-    fs::create_directories(folder.path);
-    const std::string file = (folder.path / "small.glb").string();
-    const std::string record = "\"" RAYCONTACT_PROGRAM_FILE
-                               "\" run avalanche --bodies 8 --steps 50 --speculative off --json --record \""
-                               + file + "\" >/dev/null 2>&1";
-    ASSERT_EQ(std::system(record.c_str()), 0);
-    const std::string how = " --bodies 8 --first 20 --steps 30 --values 2 --runs 1 --json --only thresholds";
-    const Ran recorded = run("sweep \"" + file + "\"" + how), here = run("sweep --swarm-steps 1 --triangles 60" + how);
-    ASSERT_EQ(recorded.status, 0);
-    ASSERT_EQ(here.status, 0);
-    const Json one = Json::parse(recorded.out)["thresholds"], two = Json::parse(here.out)["thresholds"];
-    ASSERT_EQ(one.size(), 1 + 3 * 3u);
-    // The poses are the same, and so is what is right; the pairs are not, since Bullet's boxes are larger.
-    for (std::size_t i = 0; i < one.size(); ++i) {
-        EXPECT_EQ(one[i]["threshold"], two[i]["threshold"]) << i;
-        EXPECT_EQ(one[i]["contacts_compared"], two[i]["contacts_compared"]) << i;
-        EXPECT_GT(one[i]["contacts_compared"], 0) << i;
-    }
 }
 
 TEST(BenchDevice, StepsAndKernelsOfTheCpu) {
@@ -329,27 +271,5 @@ TEST(BenchDevice, RefusesWhatItCannotDo) {
         const Ran ran = run("device --bodies 1 " + arguments, true);
         EXPECT_EQ(ran.status, 2) << arguments;
         EXPECT_EQ(std::count(ran.out.begin(), ran.out.end(), '\n'), 1) << ran.out;
-    }
-}
-
-TEST(BenchRoofline, CountsWhatTheKernelsDo) {
-    const Ran ran = run("roofline --bodies 8 --steps 90:94 --json");
-    ASSERT_EQ(ran.status, 0); // the counting kernels gave the CPU's bits
-    const Json rows = Json::parse(ran.out)["rows"];
-    ASSERT_EQ(rows.size(), 3u);
-    for (const Json& row : rows) {
-        const Json& cast = row["kinds"][0];
-        EXPECT_EQ(cast["rays"], "cast");
-        EXPECT_GE(cast["nodes"], 1); // the root, of each ray
-        // A node's planes and the corners of a block are read whole; the rest is less than as much again.
-        const double least = 384 * cast["nodes"].get<double>() + 576 * cast["blocks"].get<double>();
-        EXPECT_GE(cast["bytes_loaded"], least);
-        EXPECT_LT(cast["bytes_loaded"], 2 * least);
-        EXPECT_GT(row["floor_us_every_ray"], row["floor_us_once"]);
-        if (row["method"] == "standard") continue;
-        const Json& update = row["kinds"][1];
-        EXPECT_EQ(update["nodes"], 0);
-        EXPECT_GE(update["faces"], 1);
-        EXPECT_LT(update["operations"], cast["operations"]);
     }
 }

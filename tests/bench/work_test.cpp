@@ -4,8 +4,6 @@
 #include <bench/peers/growth.h>
 #include <bench/peers/motion.h>
 #include <bench/peers/reference.h>
-#include <bench/peers/seeds.h>
-#include <bench/peers/thresholds.h>
 #include <scenes/models/model.h>
 
 #include <gtest/gtest.h>
@@ -157,96 +155,6 @@ TEST(PeersWork, RollingPairsKeepTheirContactsAndTheirPace) {
     options.displacement = 0;
     const Work still = rolling_pairs("rolling", Shape::make(scenes::scene_model("sphere", 1000).mesh), "", options);
     EXPECT_EQ(pace(still).most, 0);
-}
-
-TEST(PeersWork, SwarmIsFastAndMeets) {
-    SwarmOptions options;
-    options.steps = 30;
-    options.triangles = 600;
-    const Work one = swarm_work(options), two = swarm_work(options);
-    EXPECT_EQ(one.body_shape.size(), 6u);
-    EXPECT_GT(pace(one).median, 0.03);
-    EXPECT_EQ(one.steps.back().poses, two.steps.back().poses);
-    const auto scene = make_scene(one, one_thread(Method::certified));
-    std::size_t contacts = 0;
-    for (const WorkStep& step : one.steps) {
-        place(*scene, step);
-        contacts += scene->find_contacts(step.pairs).size();
-    }
-    EXPECT_GT(contacts, 30u);
-}
-
-TEST(Sweep, EveryThresholdAndTheChosenOne) {
-    const Work work = some_pairs();
-    ThresholdOptions options;
-    options.values = 4;
-    options.runs = 1;
-    const std::vector<ThresholdRow> rows = sweep_thresholds(work, options, [](const std::string&) {});
-    ASSERT_EQ(rows.size(), 1 + 3 * (4 + 1u));
-    for (const ThresholdRow& row : rows) {
-        EXPECT_GT(row.us, 0);
-        EXPECT_EQ(row.sums.contacts + row.wrong.missed, row.wrong.contacts_compared + row.wrong.invented);
-        EXPECT_EQ(row.wrong.contacts_compared, rows[0].sums.contacts);
-        EXPECT_LE(row.sums.details.pairs_full, 2 * row.pair_steps);
-        const bool exact = row.method == Method::standard || row.method == Method::certified;
-        EXPECT_TRUE(!exact || row.wrong.total() == 0);
-    }
-    EXPECT_EQ(*rows[1].fraction, 1e-4);
-    EXPECT_NEAR(*rows[4].fraction, 1e-1, 1e-12);
-    EXPECT_FALSE(rows[5].fraction.has_value());
-    EXPECT_LT(rows[4].sums.details.pairs_full, rows[1].sums.details.pairs_full); // a larger threshold looks less often
-    EXPECT_NEAR(rows[0].size, 1, 0.01);
-    const std::vector<bench::Verdict> found = verdicts(rows);
-    ASSERT_EQ(found.size(), 3u);
-    for (const bench::Verdict& v : found) {
-        EXPECT_LE(v.fastest->us, v.rightest->us);
-        EXPECT_LE(v.rightest->wrong.total(), v.fastest->wrong.total());
-        EXPECT_TRUE(v.fastest->fraction && v.rightest->fraction && !v.chosen->fraction);
-    }
-}
-
-TEST(Sweep, Seeds) {
-    SeedOptions options;
-    options.count = 2;
-    options.bodies = 27;
-    options.steps = 80;
-    const std::vector<SeedRow> rows = sweep_seeds(options, [](const std::string&) {});
-    ASSERT_EQ(rows.size(), 2 * 7u);
-    EXPECT_EQ(rows[0].seed, 1u);
-    EXPECT_EQ(rows[7].seed, 2u);
-    EXPECT_GT(rows[0].wrong.contacts_compared, 0u);
-    EXPECT_NE(rows[0].wrong.contacts_compared, rows[7].wrong.contacts_compared); // another seed, another avalanche
-    for (const SeedRow& row : rows) {
-        EXPECT_EQ(row.steps, 80u);
-        EXPECT_EQ(row.sums.contacts + row.wrong.missed, row.wrong.contacts_compared + row.wrong.invented);
-        EXPECT_TRUE(row.method != Method::certified || row.wrong.total() == 0);
-    }
-}
-
-TEST(Sweep, ReductionIsOfTheSameSeedAndSetting) {
-    std::vector<SeedRow> rows;
-    const auto add_row = [&](std::uint64_t seed, Method method, bool fixed, bool cast, std::uint64_t missed) {
-        SeedRow& row = rows.emplace_back();
-        row.seed = seed;
-        row.method = method;
-        row.fixed = fixed;
-        row.cast_lost_walks = cast;
-        row.wrong.missed = missed;
-    };
-    for (const std::uint64_t seed : {1u, 2u, 3u}) {
-        add_row(seed, Method::iterative, true, true, 100 * seed);
-        add_row(seed, Method::predictive, true, true, 10);
-        add_row(seed, Method::predictive, true, false, 20);
-        add_row(seed, Method::iterative, false, true, 0);
-        add_row(seed, Method::predictive, false, true, 0);
-    }
-    const std::vector<Reduction> all = reductions(rows);
-    ASSERT_EQ(all.size(), 4u);
-    EXPECT_EQ(all[0].of_seeds.size(), 3u);
-    EXPECT_DOUBLE_EQ(all[0].least, 0.9);
-    EXPECT_DOUBLE_EQ(all[0].median, 0.95);
-    EXPECT_DOUBLE_EQ(all[1].least, 0.8);
-    EXPECT_TRUE(all[2].of_seeds.empty()); // nothing wrong to begin with is no reduction
 }
 
 TEST(Growth, RaysGrowWithTriangles) {
