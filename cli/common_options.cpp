@@ -166,7 +166,7 @@ void add_speculative_option(CLI::App& command, raycontact::Settings& settings) {
              "margin in metres, or off (docs/internals/speculative.md)",
              "auto|METRES|off", settings.is_speculative() ? "auto" : "off", [&](const std::string& word) {
                  raycontact::Settings alone;
-                 alone.speculative = word != "off" ? Speculative::on : Speculative::off;
+                 alone.speculative = word != "off" ? raycontact::Speculative::on : raycontact::Speculative::off;
                  if (word != "off" && word != "auto")
                      alone.speculative_margin = read_real(word, "a margin: give metres, such as 0.01, auto or off");
                  check_common_options(alone);

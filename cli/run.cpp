@@ -321,7 +321,7 @@ void add_run(CLI::App& app) {
         ->type_name("N|none")
         ->default_str(std::to_string(options->pictures));
     command->add_flag("--json", options->json, "print one JSON object on stdout");
-    options->settings.speculative = Speculative::on;
+    options->settings.speculative = raycontact::Speculative::on;
     add_common_options(*command, options->settings);
     add_speculative_option(*command, options->settings);
     command->footer(stop_footer);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-/// The version of these headers, for `#if`: 10000 x major + 100 x minor + patch. CMake reads it here.
+/// The version of these headers, for `#if`: 10000 x major + 100 x minor + patch.
 #define RAYCONTACT_VERSION 200

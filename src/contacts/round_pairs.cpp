@@ -68,7 +68,7 @@ private:
         round_contacts(*body.shape->round(), body.pose, ahead() ? std::optional(next_of(body)) : std::nullopt,
                        obstacles_, ahead() ? reach : 0, contacts_);
         for (const RoundContact& c : contacts_)
-            if (c.place >= coming || c.distance <= margin(slot, others[c.obstacle]))
+            if (c.is_later || c.distance <= margin(slot, others[c.obstacle]))
                 add(slot, others[c.obstacle], c, c.triangle);
     }
 
@@ -107,24 +107,34 @@ private:
 void RoundPairs::list(Executor& executor, std::span<const PlacedBody> bodies, OpenPairs& pairs, PairList* few) {
     rounds_.clear();
     is_asked_.assign(bodies.size(), 0);
+    const auto is_there = [&](BodySlot slot) { return slot < bodies.size() && bodies[slot].shape != nullptr; };
     const auto add = [&](BodySlot slot) {
-        if (slot >= bodies.size() || bodies[slot].shape == nullptr || bodies[slot].shape->round() == nullptr) return;
-        if (std::exchange(is_asked_[slot], 1) == 0) rounds_.push_back(slot);
+        if (is_there(slot) && bodies[slot].shape->round() != nullptr && std::exchange(is_asked_[slot], 1) == 0)
+            rounds_.push_back(slot);
     };
     if (few == nullptr) {
         for (BodySlot slot = 0; slot < bodies.size(); ++slot) add(slot);
-    } else {
-        for (const SlotPair& pair : few->pairs) add(pair.first), add(pair.second);
-        for (const SlotPair& pair : pairs.closed()) add(pair.first), add(pair.second);
+        return pairs.list_of(executor, rounds_, is_asked_, pairs_);
     }
-    pairs.list_of(executor, rounds_, is_asked_, pairs_);
-    if (few == nullptr) return;
+    // Two round bodies have nothing to do with what else either meets.
+    const auto add_round = [&](const SlotPair& pair) {
+        const auto [a, b] = pair;
+        if (is_there(a) && is_there(b) && bodies[a].shape->round() != nullptr && bodies[b].shape->round() != nullptr)
+            return;
+        add(a), add(b);
+    };
+    std::ranges::for_each(few->pairs, add_round);
+    std::ranges::for_each(pairs.closed(), add_round);
+    pairs.list_of(executor, rounds_, is_asked_, of_rounds_);
     PairList all;
-    for (std::size_t i = 0, k = 0; i < few->size() || k < pairs_.size();) {
-        const bool is_own = k == pairs_.size() || (i < few->size() && few->pairs[i] <= pairs_.pairs[k]);
-        const PairList& from = is_own ? *few : pairs_;
+    pairs_.resize(0);
+    for (std::size_t i = 0, k = 0; i < few->size() || k < of_rounds_.size();) {
+        const bool is_own = k == of_rounds_.size() || (i < few->size() && few->pairs[i] <= of_rounds_.pairs[k]);
+        const PairList& from = is_own ? *few : of_rounds_;
         const std::size_t at = is_own ? i++ : k++;
-        if (all.size() == 0 || all.pairs.back() != from.pairs[at]) all.add({from.pairs[at], from.slots[at]});
+        if (all.size() > 0 && all.pairs.back() == from.pairs[at]) continue;
+        all.add({from.pairs[at], from.slots[at]});
+        if (is_round(bodies, from.pairs[at])) pairs_.add({from.pairs[at], from.slots[at]});
     }
     *few = std::move(all);
 }
@@ -162,7 +172,7 @@ void RoundPairs::run(Executor& executor, const Settings& settings, std::span<con
 }
 
 void RoundPairs::trim() {
-    free_all(rounds_, is_asked_, pairs_, meetings_, slices_, found_);
+    free_all(rounds_, is_asked_, pairs_, of_rounds_, meetings_, slices_, found_);
 }
 
 } // namespace raycontact

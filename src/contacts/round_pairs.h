@@ -13,8 +13,8 @@
 
 namespace raycontact {
 
-/// Pairs with a ball or capsule, and their contacts. What a round body meets is one surface to it: so a step that asks
-/// about one pair of it asks about all.
+/// Pairs with a ball or capsule, and their contacts. The meshes that a round body meets are one surface to it: so a
+/// step that asks about one of these pairs asks about all of the body's.
 class RoundPairs {
 public:
     /// Lists those of a step. few: the pairs that the step asks about, which get the others of round bodies in them; or
@@ -36,7 +36,7 @@ private:
 
     std::vector<BodySlot> rounds_; ///< asked about
     std::vector<char> is_asked_;   ///< by slot: is one of them
-    PairList pairs_;               ///< of those
+    PairList pairs_, of_rounds_;   ///< pairs_: of this step
     std::vector<Meeting> meetings_;
     std::vector<std::vector<Contact>> slices_;
     std::vector<Contact> found_;

@@ -67,7 +67,7 @@ public:
     }
 
 private:
-    double slack() const { return 2e-6 * size_; } // of float coordinates, with a margin
+    double slack() const { return 1e-9 * size_; } // of places along the axis, which it meets at a small angle
 
     template <class Visit>
     void each_facet(double around, Visit&& visit) const {

@@ -11,6 +11,8 @@ namespace raycontact {
 
 namespace {
 
+using raycontact::leads_into;
+
 constexpr int most_turns = 8;
 /// Sine of an angle at which the way leads along a surface.
 constexpr double level = 1e-3;
@@ -33,8 +35,7 @@ FirstTouch touch_at(const Surroundings& s, const Spot& spot) {
 }
 
 bool leads_into(const Surroundings& s, std::size_t obstacle, double at, const Vec3& normal) {
-    const Vec3 way = s.way(obstacle, at);
-    return dot(way, normal) < -level * length(way);
+    return leads_into(s.way(obstacle, at), normal);
 }
 
 /// Finds the events of one obstacle.
@@ -177,6 +178,10 @@ std::vector<Spot> first_touched(const Surroundings& s, double radius, double& pa
 }
 
 } // namespace
+
+bool leads_into(const Vec3& way, const Vec3& normal) {
+    return dot(way, normal) < -level * length(way);
+}
 
 bool find_first_touches(Surroundings& s, std::vector<FirstTouch>& touched) {
     touched.clear();

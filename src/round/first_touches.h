@@ -14,6 +14,9 @@ struct FirstTouch {
     double length = 0; ///< of that rest
 };
 
+/// Whether a way goes against a normal at more than a thousandth: else it leads along the surface.
+bool leads_into(const Vec3& way, const Vec3& normal);
+
 /// What a ball or capsule touches on its way and does not touch yet, as it is then: in the order in which it comes,
 /// each time going on along what is touched, without friction or rebound. In closed form: the time at which an end or
 /// the axis, whose ends go straight, is so far from a face, edge or corner is the root of a polynomial. True if it

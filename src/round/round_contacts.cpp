@@ -5,7 +5,7 @@
 #include "round/first_touches.h"
 
 #include <algorithm>
-#include <array>
+#include <utility>
 
 namespace raycontact {
 
@@ -20,6 +20,14 @@ constexpr double glancing = 0.1, shallow = 0.05;
 
 } // namespace
 
+// Axes and diagonals lie well inside of a side each.
+int place_of(int part, const Vec3& normal, int number) {
+    constexpr double beside = 0.38; // sine of 22.5 degrees
+    const auto third = [](double x) { return x > beside ? 2 : x < -beside ? 0 : 1; };
+    const int side = third(normal.x) + 3 * third(normal.y) + 9 * third(normal.z);
+    return side + 27 * part + 81 * number;
+}
+
 void round_contacts(const Round& round, const Pose& pose, const std::optional<Pose>& next,
                     std::span<const Obstacle> obstacles, double reach, std::vector<RoundContact>& out) {
     out.clear();
@@ -27,49 +35,74 @@ void round_contacts(const Round& round, const Pose& pose, const std::optional<Po
     std::vector<Spot> near;
     std::vector<FirstTouch> touched;
     surroundings.spots(0, round.radius + reach, near);
+    const auto world_normal = [&](const Spot& spot) {
+        return rotated(surroundings.sites()[spot.obstacle].pose.rotation, spot.normal);
+    };
     const auto contact = [&](const Spot& spot, int place, const Vec3& point, double distance) {
         const Pose& frame = surroundings.sites()[spot.obstacle].pose;
-        return RoundContact{
-            spot.obstacle, place,    transform_point(frame, point), rotated(frame.rotation, spot.normal), distance,
-            spot.triangle, spot.name};
+        return RoundContact{.obstacle = spot.obstacle,
+                            .place = place,
+                            .point = transform_point(frame, point),
+                            .normal = world_normal(spot),
+                            .distance = distance,
+                            .triangle = spot.triangle,
+                            .name = spot.name};
     };
     // By the plane of the touch, below the place of the axis that comes there: a push there does not turn a ball.
     const auto later = [&](const Spot& spot, int place) {
         const Site& site = surroundings.sites()[spot.obstacle];
         const Vec3 centre = (1 - spot.at) * site.start[0] + spot.at * site.start[1];
         const double height = dot(spot.normal, centre - spot.point);
-        return contact(spot, place, centre - height * spot.normal, std::max(height - round.radius, 0.0));
+        RoundContact c = contact(spot, place, centre - height * spot.normal, std::max(height - round.radius, 0.0));
+        c.is_later = true;
+        return c;
+    };
+    // Of those of an obstacle, the how manyth of its place.
+    std::vector<std::pair<std::size_t, int>> counted;
+    const auto place = [&](const Spot& spot) {
+        const int first = place_of(spot.part, spot.normal, 0);
+        const auto number = std::ranges::count(counted, std::pair(spot.obstacle, first));
+        counted.emplace_back(spot.obstacle, first);
+        return place_of(spot.part, spot.normal, static_cast<int>(number));
     };
     std::vector<char> passed(near.size(), 0), told;
     if (next) {
-        for (std::size_t i = 0; i < near.size(); ++i)
-            passed[i] =
-                near[i].away > round.radius
-                && dot(surroundings.way(near[i].obstacle, near[i].at), near[i].normal) < round.radius - near[i].away;
+        for (std::size_t i = 0; i < near.size(); ++i) {
+            const Spot& spot = near[i];
+            const Vec3 way = surroundings.way(spot.obstacle, spot.at);
+            passed[i] = spot.away > round.radius && dot(way, spot.normal) < round.radius - spot.away
+                        && leads_into(way, spot.normal);
+        }
         if (!find_first_touches(surroundings, touched)) passed.assign(near.size(), 0); // its end is not known
     }
     told.assign(touched.size(), 0);
     const auto index_of = [&](const FirstTouch& t) { return static_cast<std::size_t>(&t - touched.data()); };
-    std::array<int, 3> count{};
+    std::vector<Vec3> dropped; // normals of what was passed and is not touched there
+    bool any_kept = false;
     for (std::size_t i = 0; i < near.size(); ++i) {
         const Spot& spot = near[i];
-        if (i == 0 || near[i - 1].obstacle != spot.obstacle) count = {};
-        const int place = spot.part + 3 * count[static_cast<std::size_t>(spot.part)]++;
+        const int own = place(spot);
         const auto then = std::ranges::find_if(touched, [&](const FirstTouch& t) {
             return !told[index_of(t)] && t.spot.obstacle == spot.obstacle && t.spot.part == spot.part
                    && dot(t.spot.normal, spot.normal) >= (passed[i] ? alike_from : same_from);
         });
         if (then != touched.end()) told[index_of(*then)] = 1;
+        any_kept = any_kept || !passed[i] || then != touched.end();
         if (!passed[i])
-            out.push_back(contact(spot, place, spot.point, spot.away - round.radius));
+            out.push_back(contact(spot, own, spot.point, spot.away - round.radius));
         else if (then != touched.end())
-            out.push_back(later(then->spot, place));
+            out.push_back(later(then->spot, own));
+        else
+            dropped.push_back(world_normal(spot));
     }
-    count = {};
+    counted.clear();
     for (const FirstTouch& t : touched) {
-        const bool skims = !near.empty() && t.into < glancing * t.length && t.into < shallow * round.radius;
-        if (told[index_of(t)] || skims) continue;
-        out.push_back(later(t.spot, coming + t.spot.part + 3 * count[static_cast<std::size_t>(t.spot.part)]++));
+        if (told[index_of(t)]) continue;
+        // What it passes above a tile it touches on the next: the same surface.
+        const bool goes_on = std::ranges::any_of(
+            dropped, [&](const Vec3& normal) { return dot(normal, world_normal(t.spot)) >= alike_from; });
+        const bool skims = any_kept && !goes_on && t.into < glancing * t.length && t.into < shallow * round.radius;
+        if (!skims) out.push_back(later(t.spot, coming + place(t.spot)));
     }
     std::ranges::stable_sort(out, {}, &RoundContact::obstacle);
 }

@@ -23,16 +23,20 @@ struct Obstacle {
 
 /// Where a ball or capsule is nearest to an obstacle, or will touch it. World frame.
 struct RoundContact {
-    std::size_t obstacle = 0; ///< its index
-    int place = 0; ///< names it from step to step: which end, or the side (2); + 3 for each further one; + `coming`
-    Vec3 point;    ///< on the obstacle
-    Vec3 normal;   ///< unit, out of the obstacle, or towards the side where it is pushed
+    std::size_t obstacle = 0;        ///< its index
+    int place = 0;                   ///< names it from step to step: place_of()
+    bool is_later = false;           ///< it touches on the way; distance: from the plane of that touch
+    Vec3 point;                      ///< on the obstacle
+    Vec3 normal;                     ///< unit, out of the obstacle, or towards the side where it is pushed
     double distance = 0;             ///< negative: the depth
     std::uint32_t triangle = 0;      ///< of the mesh, index of its file
     std::array<int, 2> name{-1, -1}; ///< of a facet that is no mesh's
 };
 
-/// Added to the places of what is touched later.
+/// Names a place of a round: which end (0, 1) or the side (2), and on which of 26 sides of the obstacle it is, by the
+/// normal in the obstacle's frame, and the how manyth of those: whatever else is touched, it stays.
+int place_of(int part, const Vec3& normal, int number);
+/// Added to the places of what touches later, but for what was near already.
 inline constexpr int coming = 1 << 20;
 
 /// Of each obstacle, the places where the distance of an end, or that of a capsule's side from edges and corners, is a

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
 #include <numbers>
 
 namespace raycontact {
@@ -22,6 +23,8 @@ constexpr double rounding = 1e-12;
 constexpr double one_point = 1e-9;
 /// Of the greatest distance: places that count as one.
 constexpr double one_place = 1e-3;
+/// Sine of the angle up to which an axis lies on what is level.
+constexpr double level = 0.05;
 /// Cosine by which a direction counts as the normal of a face.
 constexpr double of_a_face = 1 - 1e-9;
 
@@ -34,6 +37,36 @@ bool in_box(const Facet& f, const Vec3& p, double around) {
            && p.z >= f.low.z - around && p.z <= f.high.z + around;
 }
 
+constexpr std::size_t few = 64; // facets
+
+/// In the order of their boxes along the axis that tells most of them apart.
+void sort_facets(Site& site) {
+    site.widest = std::numeric_limits<double>::infinity();
+    if (site.facets.size() <= few) return;
+    Vec3 low = site.facets[0].low, high = low;
+    for (const Facet& f : site.facets) low = least(low, f.low), high = most(high, f.low);
+    const Vec3 size = high - low;
+    site.sorted_along = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+    const auto at = [&](const Vec3& v) { return raycontact::axis(v, site.sorted_along); };
+    std::ranges::stable_sort(site.facets, {}, [&](const Facet& f) { return at(f.low); });
+    site.widest = 0;
+    for (const Facet& f : site.facets) site.widest = std::max(site.widest, at(f.high) - at(f.low));
+}
+
+/// Whether any facet whose box is so near to a point is as asked for.
+template <class Is>
+bool any_beside(const Site& site, const Vec3& p, double near, Is&& is) {
+    const bool is_sorted = site.facets.size() > few;
+    const auto at = [&](const Vec3& v) { return raycontact::axis(v, site.sorted_along); };
+    auto f = site.facets.begin();
+    if (is_sorted)
+        f = std::ranges::lower_bound(site.facets, at(p) - near - site.widest, {},
+                                     [&](const Facet& g) { return at(g.low); });
+    for (; f != site.facets.end() && !(is_sorted && at(f->low) > at(p) + near); ++f)
+        if (in_box(*f, p, near) && is(*f)) return true;
+    return false;
+}
+
 /// Of a facet as seen from a point of it: 2 pi within, pi on an edge.
 double angle_at(const Facet& f, unsigned on) {
     if (on == 7) return 2 * std::numbers::pi;
@@ -42,16 +75,27 @@ double angle_at(const Facet& f, unsigned on) {
     return corner_angles(f.corner)[k];
 }
 
-/// Of two at one place the face speaks: an edge may yet be a step.
-void add(std::vector<Spot>& spots, const Spot& spot, double limit) {
-    const auto known = std::ranges::find_if(spots, [&](const Spot& s) {
-        return length2(s.point - spot.point) < one_place * one_place * limit * limit && s.away * spot.away > 0;
-    });
-    if (known == spots.end())
-        spots.push_back(spot);
-    else if (spot.flat && !known->flat)
-        *known = spot;
-}
+/// Spots of one obstacle, each place once. Of two at one place that of a face counts: an edge may yet be a step.
+class SpotList {
+public:
+    SpotList(std::vector<Spot>& spots, double limit) : spots_(spots), apart_(one_place * limit) {}
+    void add(const Spot& spot) {
+        const auto end = by_x_.upper_bound(spot.point.x + apart_);
+        for (auto known = by_x_.lower_bound(spot.point.x - apart_); known != end; ++known) {
+            Spot& s = spots_[known->second];
+            if (!(length2(s.point - spot.point) < apart_ * apart_ && s.away * spot.away > 0)) continue;
+            if (spot.flat && !s.flat) s = spot; // its key stays: it is at the same place
+            return;
+        }
+        by_x_.emplace(spot.point.x, spots_.size());
+        spots_.push_back(spot);
+    }
+
+private:
+    std::vector<Spot>& spots_;
+    double apart_;
+    std::multimap<double, std::size_t> by_x_;
+};
 
 } // namespace
 
@@ -80,6 +124,7 @@ Surroundings::Surroundings(const Round& round, const Pose& pose, const std::opti
         const double around = round.radius + reach + margin_ + longest / 2;
         const Vec3 more{around, around, around};
         o.surface.near(low - more, high + more, site.facets);
+        sort_facets(site);
     }
 }
 
@@ -142,12 +187,24 @@ bool Surroundings::is_least(std::size_t obstacle, const Vec3& point, double at, 
     const double away2 = length2(axis(obstacle, at, part) - point), near = beside(obstacle);
     for (std::size_t k = 0; k < sites_.size(); ++k) {
         const Vec3 p = seen_from(k, obstacle, point, at, part), centre = axis(k, at, part);
-        for (const Facet& f : sites_[k].facets)
-            if (in_box(f, p, near) && nearest(f, centre).away2 < away2 * (1 - rounding)
-                && nearest(f, p).away2 <= near * near)
-                return false;
+        if (any_beside(sites_[k], p, near, [&](const Facet& f) {
+                return nearest(f, centre).away2 < away2 * (1 - rounding) && nearest(f, p).away2 <= near * near;
+            }))
+            return false;
     }
     return true;
+}
+
+bool Surroundings::is_nearer_there(const Spot& spot, double part, double than2) const {
+    const double near = beside(spot.obstacle);
+    for (std::size_t k = 0; k < sites_.size(); ++k) {
+        const Vec3 p = seen_from(k, spot.obstacle, spot.point, spot.at, part), centre = axis(k, spot.at, part);
+        if (any_beside(sites_[k], p, near, [&](const Facet& f) {
+                return nearest(f, centre).away2 < than2 && nearest(f, p).away2 <= near * near;
+            }))
+            return true;
+    }
+    return false;
 }
 
 // A step that is lower than the margin: the surface goes on beside it towards the round, in the plane of a face that it
@@ -162,34 +219,34 @@ bool Surroundings::is_step(const Spot& spot, std::span<const Spot> spots, double
     if (!in_plane) return false;
     for (std::size_t k = 0; k < sites_.size(); ++k) {
         const Vec3 p = seen_from(k, spot.obstacle, spot.point, spot.at, part), centre = axis(k, spot.at, part);
-        for (const Facet& f : sites_[k].facets) {
-            if (!in_box(f, p, near)) continue;
-            const Nearest below = nearest(f, p);
-            if (below.away2 > near * near) continue;
-            const double from = length2(below.point - centre);
-            if (nearest(f, centre).away2 < from * (1 - rounding)) return true;
-        }
+        if (any_beside(sites_[k], p, near, [&](const Facet& f) {
+                const Nearest below = nearest(f, p);
+                if (below.away2 > near * near) return false;
+                const double from = length2(below.point - centre);
+                return nearest(f, centre).away2 < from * (1 - rounding);
+            }))
+            return true;
     }
     return false;
 }
 
-// Nowhere nearer, as beside a capsule that lies flat: the ends of the plateau tell it.
-bool Surroundings::is_plateau(const Spot& spot, double part) const {
-    const double aside = 0.01 * spot.away, near = aside + beside(spot.obstacle);
-    std::array<bool, 2> goes_on{};
+// Whether the surface goes on beside a capsule, to either side: no farther away than by so much of the way there.
+std::array<bool, 2> Surroundings::goes_on(const Spot& spot, double part, double slope) const {
+    const double aside = 0.01 * spot.away, near = aside + beside(spot.obstacle), most = spot.away + slope * aside;
+    std::array<bool, 2> found{};
     for (std::size_t k = 0; k < sites_.size(); ++k) {
         const Vec3 p = seen_from(k, spot.obstacle, spot.point, spot.at, part), centre = axis(k, spot.at, part);
         const Vec3 along = axis(k, 1, part) - axis(k, 0, part);
         const Vec3 step = (aside / length(along)) * along;
-        for (const Facet& f : sites_[k].facets) {
-            if (!in_box(f, p, near)) continue;
+        any_beside(sites_[k], p, near, [&](const Facet& f) {
             for (const std::size_t side : {0, 1}) {
                 const Vec3 beside_it = side == 0 ? centre - step : centre + step;
-                goes_on[side] = goes_on[side] || nearest(f, beside_it).away2 <= spot.away * spot.away * (1 + 1e-9);
+                found[side] = found[side] || nearest(f, beside_it).away2 <= most * most * (1 + 1e-9);
             }
-        }
+            return found[0] && found[1];
+        });
     }
-    return goes_on[0] && goes_on[1];
+    return found;
 }
 
 // Which side the axis is on, by the angle-weighted normal there (Baerentzen and Aanaes 2005).
@@ -202,13 +259,13 @@ void Surroundings::finish(const Site& site, const Facet& facet, unsigned on, con
         const double here = one_point * site.obstacle->surface.size();
         out = {};
         double most = 0;
-        for (const Facet& f : site.facets) {
-            if (!in_box(f, spot.point, here)) continue;
+        any_beside(site, spot.point, here, [&](const Facet& f) {
             const Nearest n = nearest(f, spot.point);
-            if (n.away2 > here * here) continue;
+            if (n.away2 > here * here) return false;
             out = out + angle_at(f, n.on) * f.normal;
             most = std::max(most, std::fabs(dot(f.normal, between)));
-        }
+            return false;
+        });
         spot.flat = most >= of_a_face * away;
     }
     const bool inside = !site.obstacle->two_sided && dot(out, between) < 0;
@@ -232,21 +289,15 @@ void Surroundings::of_end(int end, double part, double limit, std::vector<std::v
         }
     }
     std::ranges::stable_sort(entries, {}, &Entry::away2);
-    for (std::size_t i = 0; i < entries.size(); ++i) {
-        const Entry& e = entries[i];
-        const double near = beside(e.site);
-        bool least = true;
-        // No facet that is there is nearer. The one that is mostly is but little nearer.
-        for (std::size_t j = i; least && e.nearest.on != 7 && j-- > 0;) {
-            const Entry& nearer = entries[j];
-            if (nearer.away2 >= e.away2 - rounding * limit * limit) continue;
-            const Vec3 p = seen_from(nearer.site, e.site, e.nearest.point, end, part);
-            least = !in_box(*nearer.facet, p, near) || nearest(*nearer.facet, p).away2 > near * near;
-        }
-        if (!least) continue;
+    std::vector<SpotList> lists;
+    for (std::vector<Spot>& spots : out) lists.emplace_back(spots, limit);
+    for (const Entry& e : entries) {
+        if (!out[e.site].empty() && out[e.site].front().away < 0) continue; // it is inside: the nearest is all
         Spot spot{.obstacle = e.site, .part = end, .at = double(end), .point = e.nearest.point};
+        // No facet that is there is nearer.
+        if (e.nearest.on != 7 && is_nearer_there(spot, part, e.away2 - rounding * limit * limit)) continue;
         finish(sites_[e.site], *e.facet, e.nearest.on, axis(e.site, end, part), spot);
-        add(out[e.site], spot, limit);
+        lists[e.site].add(spot);
     }
     for (std::size_t k = 0; k < sites_.size(); ++k) {
         std::vector<Spot>& spots = out[k];
@@ -274,29 +325,26 @@ void Surroundings::of_end(int end, double part, double limit, std::vector<std::v
 }
 
 void Surroundings::of_side(double part, double limit, std::vector<std::vector<Spot>>& out) const {
-    static thread_local std::vector<Entry> entries; // by the distance from the axis
-    entries.clear();
     struct Candidate {
         Entry entry; // nearest: the place on the facet
         double at;
     };
     static thread_local std::vector<Candidate> candidates;
     candidates.clear();
+    // An edge across which the axis leaves a face counts, though the axis rises from there: it lies on both ends.
+    constexpr double level2 = level * level;
     for (std::size_t k = 0; k < sites_.size(); ++k) {
         const Vec3 a = axis(k, 0, part), along = axis(k, 1, part) - a;
         const double length2_along = length2(along);
         for (const Facet& f : sites_[k].facets) {
             if (least_away(f, a, a + along) >= limit) continue;
-            double least = std::min(nearest(f, a).away2, nearest(f, a + along).away2);
-            const double slope = dot(f.normal, along),
-                         through = slope != 0 ? dot(f.normal, f.corner[0] - a) / slope : 2;
-            if (through > 0 && through < 1 && nearest(f, a + through * along).on == 7) least = 0;
             const auto consider = [&](const Vec3& p, unsigned on, double at) {
                 if (!(at > 0 && at < 1)) return; // the ends see it
                 const Vec3 centre = a + at * along;
                 const double away2 = length2(p - centre);
-                least = std::min(least, away2);
-                if (away2 >= limit * limit || nearest(f, centre).away2 < away2 - rounding * limit * limit) return;
+                if (away2 >= limit * limit
+                    || nearest(f, centre).away2 < away2 * (1 - level2) - rounding * limit * limit)
+                    return;
                 candidates.push_back({{away2, k, &f, {p, away2, on}}, at});
             };
             for (std::size_t i = 0; i < 3; ++i) {
@@ -308,26 +356,24 @@ void Surroundings::of_side(double part, double limit, std::vector<std::vector<Sp
                 const auto [at, on_edge] = closest_on_lines(a, along, p, edge, square);
                 if (on_edge > 0 && on_edge < 1) consider(p + on_edge * edge, edge_bits, at);
             }
-            if (least < limit * limit) entries.push_back({least, k, &f, {}});
         }
     }
     std::ranges::stable_sort(candidates, {}, [](const Candidate& c) { return c.entry.away2; });
-    std::ranges::stable_sort(entries, {}, &Entry::away2);
+    std::vector<SpotList> lists;
+    for (std::vector<Spot>& spots : out) lists.emplace_back(spots, limit);
     for (const auto& [e, at] : candidates) {
-        const double near = beside(e.site), nearer_than = e.away2 - rounding * limit * limit;
-        bool least = true;
-        // The facet that is nearer there is mostly but little nearer.
-        for (auto other = std::ranges::lower_bound(entries, nearer_than, {}, &Entry::away2);
-             least && other-- != entries.begin();) {
-            const Vec3 p = seen_from(other->site, e.site, e.nearest.point, at, part);
-            least = !in_box(*other->facet, p, near) || nearest(*other->facet, p).away2 > near * near
-                    || nearest(*other->facet, axis(other->site, at, part)).away2 >= nearer_than;
-        }
-        if (!least) continue;
         Spot spot{.obstacle = e.site, .part = 2, .at = at, .point = e.nearest.point, .away = std::sqrt(e.away2)};
-        if (is_plateau(spot, part)) continue;
+        const double rounded = rounding * limit * limit;
+        if (!is_nearer_there(spot, part, e.away2 - rounded)) {
+            const auto [before, behind] = goes_on(spot, part, 0);
+            if (before && behind) continue; // nowhere nearer: the ends of the plateau tell it
+        } else {
+            if (is_nearer_there(spot, part, e.away2 * (1 - level2) - rounded)) continue;
+            const auto [before, behind] = goes_on(spot, part, level);
+            if (before == behind) continue;
+        }
         finish(sites_[e.site], *e.facet, e.nearest.on, axis(e.site, at, part), spot);
-        if (spot.away > 0) add(out[e.site], spot, limit);
+        if (spot.away > 0) lists[e.site].add(spot);
     }
 }
 

@@ -3,6 +3,7 @@
 
 #include "round/round_contacts.h"
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -25,9 +26,11 @@ struct Spot {
 struct Site {
     const Obstacle* obstacle;
     Pose pose;                 ///< of the obstacle
-    std::vector<Facet> facets; ///< near the way
-    Vec3 start[2];             ///< the ends of the axis now; frame of the obstacle
-    Vec3 from[2], by[2];       ///< a straight piece of their way
+    std::vector<Facet> facets; ///< near the way; of many in the order of their boxes along an axis
+    std::size_t sorted_along = 0;
+    double widest = 0;   ///< of their boxes along that axis; infinite: they are few, and not sorted
+    Vec3 start[2];       ///< the ends of the axis now; frame of the obstacle
+    Vec3 from[2], by[2]; ///< a straight piece of their way
 };
 
 /// How many ends count: those of a ball are one.
@@ -69,7 +72,8 @@ private:
     /// Metres within which a facet is beside a point of the obstacle.
     double beside(std::size_t site) const;
     bool is_step(const Spot& spot, std::span<const Spot> spots, double part) const;
-    bool is_plateau(const Spot& spot, double part) const;
+    std::array<bool, 2> goes_on(const Spot& spot, double part, double slope) const;
+    bool is_nearer_there(const Spot& spot, double part, double than2) const;
     void finish(const Site& site, const Facet& facet, unsigned on, const Vec3& centre, Spot& spot) const;
     void of_end(int end, double part, double limit, std::vector<std::vector<Spot>>& out) const;
     void of_side(double part, double limit, std::vector<std::vector<Spot>>& out) const;

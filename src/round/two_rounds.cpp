@@ -14,8 +14,10 @@ namespace {
 
 /// Sine of the angle up to which capsules lie beside each other: a witness point is off the surface by its square.
 constexpr double beside = 0.05;
-/// Of both radii: lengths and distances that count as one.
-constexpr double one_place = 1e-3;
+/// Of both radii: lengths and distances that count as one; of contacts that touch later and others.
+constexpr double one_place = 1e-3, beside_of_end = 0.25;
+/// Cosine from which on what touches later is what is near.
+constexpr double alike = 0.9;
 /// Of both radii: axes that are nearer than this have no direction between them.
 constexpr double no_way = 1e-12;
 
@@ -154,8 +156,9 @@ void two_round_contacts(const MovingRound& a, const MovingRound& b, double reach
     }
     const TwoAxes now = moving.at(0);
     const double both = a.round.radius + b.round.radius, one = one_place * both;
-    const auto add = [&](int place, const Places& p, const Vec3& normal, double distance) {
+    const auto add = [&](int place, const Places& p, const Vec3& normal, double distance, bool is_later) {
         out.push_back({.place = place,
+                       .is_later = is_later,
                        .point = origin + moving.b.at(p.on_b) - b.round.radius * normal,
                        .normal = -normal,
                        .distance = distance});
@@ -179,23 +182,48 @@ void two_round_contacts(const MovingRound& a, const MovingRound& b, double reach
                 const double here = now.away(p);
                 if (here - both > reach || dot(now.between(p), normal) <= 0) continue;
                 if (e == 1 && told == 1 && length(moving.a.at(p.on_a) - moving.a.at(ends[0].on_a)) <= one) continue;
-                add(e, p, (1 / here) * now.between(p), here - both);
+                add(e, p, (1 / here) * now.between(p), here - both, false);
                 least = std::min(least, here);
                 ++told;
             }
             main_counts = told == 0 || away < least - one;
         }
-        if (main_counts) add(2, nearest, normal, distance);
-        return;
+        if (main_counts) add(2, nearest, normal, distance, false);
     }
     if (!ahead) return;
-    const std::optional<double> touch = moving.touch(both);
-    if (!touch) return;
-    const TwoAxes then = moving.at(*touch);
-    const Places place = then.nearest();
-    if (!(then.away(place) > 0)) return;
-    const Vec3 at_touch = (1 / then.away(place)) * then.between(place);
-    add(2, place, at_touch, std::max(dot(now.between(place), at_touch) - both, 0.0));
+    // What touches later: the axes, and each end by itself, since what is near at one end says nothing of the other.
+    const auto add_later = [&](int place, const MovingAxes& of, const auto& places_of) {
+        if (of.at(0).away(of.at(0).nearest()) <= both) return;
+        const std::optional<double> touch = of.touch(both);
+        if (!touch) return;
+        const TwoAxes then = of.at(*touch);
+        const Places there = then.nearest(), p = places_of(there);
+        const double far = then.away(there);
+        if (!(far > 0)) return;
+        const Vec3 at_touch = (1 / far) * then.between(there), on_a = moving.a.at(p.on_a);
+        const bool is_told = std::ranges::any_of(out, [&](const RoundContact& c) {
+            const Vec3 own = c.point - origin + (a.round.radius + c.distance) * c.normal;
+            return dot(at_touch, -c.normal) >= alike && length(own - on_a) <= beside_of_end * both;
+        });
+        if (is_told) return;
+        add(coming + place, p, at_touch, std::max(dot(now.between(p), at_touch) - both, 0.0), true);
+    };
+    const auto as_they_are = [](const Places& p) { return p; };
+    add_later(2, moving, as_they_are);
+    for (const std::size_t e : {0, 1}) {
+        const double end = double(e);
+        const auto of_point = [e](const std::array<Vec3, 2>& v) { return std::array<Vec3, 2>{v[e], v[e]}; };
+        if (length2(moving.a.along()) > 0)
+            add_later(int(e), {{of_point(moving.a.end)}, moving.b, of_point(moving.way_a), moving.way_b},
+                      [&](const Places& p) {
+                          return Places{end, p.on_b};
+                      });
+        if (length2(moving.b.along()) > 0)
+            add_later(3 + int(e), {moving.a, {of_point(moving.b.end)}, moving.way_a, of_point(moving.way_b)},
+                      [&](const Places& p) {
+                          return Places{p.on_a, end};
+                      });
+    }
 }
 
 } // namespace raycontact

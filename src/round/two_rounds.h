@@ -15,9 +15,9 @@ struct MovingRound {
     std::optional<Pose> next; ///< where it is expected in the next step
 };
 
-/// Where two balls or capsules are nearest, or will touch, as round_contacts() has it with b as the obstacle: one
-/// place, or both ends of the stretch along which two capsules lie beside each other. Of what is about to touch the one
-/// that touches first, if both are expected somewhere; their ends go straight.
+/// Where two balls or capsules are nearest, as round_contacts() has it with b as the obstacle: one place, or both ends
+/// of the stretch along which two capsules lie beside each other (places 0 and 1; else 2). If both are expected
+/// somewhere, what touches on the way there, too: the axes, and each end by itself; ends go straight.
 RAYCONTACT_API void two_round_contacts(const MovingRound& a, const MovingRound& b, double reach,
                                        std::vector<RoundContact>& out);
 
