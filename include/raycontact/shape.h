@@ -4,9 +4,11 @@
 #include <raycontact/export.h>
 #include <raycontact/mesh.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 namespace raycontact {
 
@@ -30,6 +32,11 @@ public:
     /// prepare_mesh() and the other one.
     static std::shared_ptr<const Shape> make(const Mesh& mesh, std::uint32_t threads = 0);
 
+    /// What save() gave, prepared if it was: the same to the bit in all that it answers, in a part of the time that it
+    /// took to be made (docs/performance.md). Throws InputError for any bytes that save() did not give, damaged ones,
+    /// and those of another version of the library or another kind of machine; no bytes do harm.
+    static std::shared_ptr<const Shape> load(std::span<const std::byte> bytes);
+
     ~Shape();
     Shape(const Shape&) = delete;
     Shape& operator=(const Shape&) = delete;
@@ -42,6 +49,10 @@ public:
     void prepare(std::uint32_t threads = 0) const;
     /// prepare() was done, by whomever.
     bool is_prepared() const noexcept;
+
+    /// The shape as bytes, with what prepare() made if it did: 45 to 85 a triangle. They are for load() by this version
+    /// of the library on this kind of machine (order of bytes), as a cache: keep the mesh, too.
+    std::vector<std::byte> save() const;
 
     const std::string& name() const noexcept;  ///< the mesh's
     const MeshReport& report() const noexcept; ///< what the mesh is, and what was repaired
