@@ -45,8 +45,8 @@ struct ContactFeature {
     Side source = Side::a;
     /// Of the source a vertex, of the other body the triangle that was hit (`refined`: the nearest); of edges an edge
     /// of either: 3 x its lowest triangle + its first corner there; of faces a triangle of either. Of a round source
-    /// the place on it (0 and 1: an end of its axis, 2: between them, + 3 for each further one there, + 2^20 of what is
-    /// touched later), of the other body the triangle, or no_index if it is round, too.
+    /// a number of the place on it that stays (docs/conventions.md, A contact); of the other body the triangle, or
+    /// no_index if it is round, too.
     std::uint32_t index_a = 0;
     std::uint32_t index_b = 0; ///< likewise, of body b
 

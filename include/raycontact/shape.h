@@ -32,9 +32,9 @@ public:
     /// prepare_mesh() and the other one.
     static std::shared_ptr<const Shape> make(const Mesh& mesh, std::uint32_t threads = 0);
 
-    /// What save() gave, of a mesh or a round shape, prepared if it was: the same to the bit in all that it answers.
-    /// Some tens of times faster than make() of the mesh; no bit depends on threads. Throws InputError for bytes that
-    /// save() did not give, that are damaged or not all there, or of another version of the library or kind of machine.
+    /// What save() gave, prepared if it was: the same to the bit in all that it answers, in a part of the time that it
+    /// took to be made (docs/performance.md). Throws InputError for any bytes that save() did not give, damaged ones,
+    /// and those of another version of the library or another kind of machine; no bytes do harm.
     static std::shared_ptr<const Shape> load(std::span<const std::byte> bytes);
 
     ~Shape();
@@ -50,8 +50,8 @@ public:
     /// prepare() was done, by whomever.
     bool is_prepared() const noexcept;
 
-    /// The shape as bytes, with what prepare() made, if it did: some 70 a triangle. For load() by this version of the
-    /// library on this kind of machine (order of bytes); keep the mesh where others are to read it.
+    /// The shape as bytes, with what prepare() made if it did: 45 to 85 a triangle. They are for load() by this version
+    /// of the library on this kind of machine (order of bytes), as a cache: keep the mesh, too.
     std::vector<std::byte> save() const;
 
     const std::string& name() const noexcept;  ///< the mesh's

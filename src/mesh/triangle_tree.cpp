@@ -2,6 +2,7 @@
 #include "mesh/triangle_tree.h"
 
 #include "executor/divide.h"
+#include "mesh/tree_parts.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,23 +15,7 @@ namespace {
 
 using kernels::uint;
 constexpr std::size_t block_size = TRIANGLE_LANES;
-constexpr float infinite = std::numeric_limits<float>::infinity();
-
-struct ItemBox {
-    std::array<float, 3> low{infinite, infinite, infinite}, high{-infinite, -infinite, -infinite};
-
-    void add(const ItemBox& other) {
-        for (int i = 0; i < 3; ++i) {
-            low[i] = std::min(low[i], other.low[i]);
-            high[i] = std::max(high[i], other.high[i]);
-        }
-    }
-    double area() const {
-        const double x = double(high[0]) - double(low[0]), y = double(high[1]) - double(low[1]),
-                     z = double(high[2]) - double(low[2]);
-        return x * y + y * z + z * x;
-    }
-};
+constexpr float infinite = ItemBox::infinite;
 
 struct Item {
     ItemBox box;
@@ -196,18 +181,8 @@ private:
     uint write_block(std::span<Item> items) {
         std::ranges::sort(items, {}, &Item::triangle);
         kernels::TriangleBlock& block = blocks.emplace_back();
-        for (std::size_t lane = 0; lane < block_size; ++lane) {
-            const bool empty = lane >= items.size();
-            block.triangle[lane] = empty ? NONE : items[lane].triangle;
-            for (std::size_t corner = 0; corner < 3; ++corner) {
-                constexpr float nan = std::numeric_limits<float>::quiet_NaN();
-                const kernels::Packed3 p = empty ? kernels::Packed3{nan, nan, nan}
-                                                 : plan_->points[plan_->triangles[items[lane].triangle][corner]];
-                block.corner[3 * corner + 0][lane] = p.x;
-                block.corner[3 * corner + 1][lane] = p.y;
-                block.corner[3 * corner + 2][lane] = p.z;
-            }
-        }
+        for (std::size_t lane = 0; lane < block_size; ++lane)
+            write_lane(block, lane, *plan_, lane < items.size() ? items[lane].triangle : NONE);
         return static_cast<uint>(blocks.size() - 1);
     }
 
@@ -344,12 +319,7 @@ private:
         node.parent = parent;
         for (std::size_t lane = 0; lane < NODE_LANES; ++lane) {
             const bool empty = lane >= children.size();
-            for (int axis = 0; axis < 3; ++axis) {
-                // Empty lanes are inverted so far that no ray enters before it leaves.
-                constexpr float huge = 1e30f;
-                node.bounds[axis][lane] = empty ? huge : down(branches_[children[lane]].box.low[axis]);
-                node.bounds[3 + axis][lane] = empty ? -huge : up(branches_[children[lane]].box.high[axis]);
-            }
+            write_box(node, lane, empty ? nullptr : &branches_[children[lane]].box, plan_.grow);
             node.child[lane] = NONE;
             if (empty) continue;
             const Branch& b = branches_[children[lane]];
@@ -364,9 +334,6 @@ private:
         return true;
     }
 
-    float down(float x) const { return std::nextafter(static_cast<float>(double(x) - plan_.grow), -1e38f); }
-    float up(float x) const { return std::nextafter(static_cast<float>(double(x) + plan_.grow), 1e38f); }
-
     TriangleTree& tree_;
     const TreePlan& plan_;
     Executor& executor_;
@@ -380,11 +347,7 @@ bool build_tree(TriangleTree& tree, const TreePlan& plan, Executor& executor) {
     std::vector<Item> items;
     items.reserve(plan.chosen.size());
     for (const std::uint32_t i : plan.chosen) {
-        Item item{{}, {}, i};
-        for (const std::uint32_t v : plan.triangles[i]) {
-            const auto [x, y, z] = plan.points[v];
-            item.box.add({{x, y, z}, {x, y, z}});
-        }
+        Item item{box_of_triangle(plan, i), {}, i};
         for (int axis = 0; axis < 3; ++axis) item.centre[axis] = item.box.low[axis] + item.box.high[axis];
         items.push_back(item);
     }

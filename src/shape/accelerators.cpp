@@ -9,6 +9,7 @@
 
 #include <chrono>
 #include <thread>
+#include <utility>
 
 namespace raycontact {
 
@@ -28,6 +29,12 @@ public:
 private:
     std::atomic<std::uint64_t>& maker_;
 };
+
+void set_places(Accelerators& made) {
+    made.header.outside_cells = host_place(made.outside_cells);
+    made.header.clearances = host_place(made.clearances);
+    made.header.normal_cones = host_place(made.normal_cones);
+}
 
 } // namespace
 
@@ -49,9 +56,24 @@ std::unique_ptr<const Accelerators> build_accelerators(const ShapeData& shape, E
     build_normal_cones(shape, *made, executor, stop);
     made->supports = Supports(shape, executor, stop);
     if (stop.stop_requested()) return nullptr;
-    made->header.outside_cells = host_place(made->outside_cells);
-    made->header.clearances = host_place(made->clearances);
-    made->header.normal_cones = host_place(made->normal_cones);
+    set_places(*made);
+    return made;
+}
+
+std::unique_ptr<const Accelerators> restore_accelerators(const ShapeData& shape, SavedAccelerators saved) {
+    const FloatEnvironment environment;
+    auto made = std::make_unique<Accelerators>();
+    made->header = shape.header;
+    // Only of an unchecked mesh is it not known before (build_accelerators()).
+    const bool outward = shape.header.outward != 0;
+    if (saved.outward != outward && (shape.mesh.report.checked || shape.header.closed == 0)) return nullptr;
+    made->header.outward = saved.outward ? 1 : 0;
+    made->supports = Supports(std::move(saved.reaches));
+    if (!restore_outside_grid(shape, *made, std::move(saved.outside_cells))
+        || !restore_clearance_grid(shape, *made, std::move(saved.clearances))
+        || !restore_normal_cones(shape, *made, std::move(saved.normal_cones)) || made->supports.reaches().empty())
+        return nullptr;
+    set_places(*made);
     return made;
 }
 

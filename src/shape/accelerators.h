@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <memory>
 #include <stop_token>
+#include <utility>
 #include <vector>
 
 namespace raycontact {
@@ -29,6 +30,16 @@ struct Accelerators {
 std::unique_ptr<const Accelerators> build_accelerators(const ShapeData& shape, Executor& executor,
                                                        const std::stop_token& stop);
 
+/// What a shape does not tell of its accelerators; the lists as they have them.
+struct SavedAccelerators {
+    bool outward = false;
+    std::vector<kernels::uint> normal_cones, outside_cells, clearances;
+    std::vector<float> reaches; ///< of Supports
+};
+
+/// What was saved of this shape's. Null where it does not fit the shape: no number of it leads out of an array.
+std::unique_ptr<const Accelerators> restore_accelerators(const ShapeData& shape, SavedAccelerators saved);
+
 /// The accelerators of one shape, made once; read by any thread while another makes them.
 class AcceleratorSlot {
 public:
@@ -36,6 +47,11 @@ public:
     const Accelerators* get() const { return ready_.load(std::memory_order_acquire); }
     /// Makes them, unless they are there. Waits for a thread that is at it. False if it was asked to stop.
     bool make(const ShapeData& shape, Executor& executor, const std::stop_token& stop);
+    /// Those of a shape that nobody else has yet.
+    void set(std::unique_ptr<const Accelerators> made) {
+        made_ = std::move(made);
+        ready_.store(made_.get(), std::memory_order_release);
+    }
 
 private:
     /// The process in which a thread is at it; 0: none. A forked child has its parent's number here and no such thread.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
 namespace raycontact {
 
@@ -41,9 +42,9 @@ double wanted_cells(double triangles) {
     return std::clamp(each * counted, 6e2, 4e6);
 }
 
-class Grid {
-public:
-    explicit Grid(const ShapeData& shape) {
+/// Where the cells lie.
+struct GridPlace {
+    explicit GridPlace(const ShapeData& shape) {
         const float *low = shape.header.low, *high = shape.header.high;
         double extent[3];
         for (int axis = 0; axis < 3; ++axis) extent[axis] = double(high[axis]) - double(low[axis]);
@@ -61,6 +62,28 @@ public:
             low_[axis] = static_cast<float>(double(low[axis]) - pad * side);
             cells_.size[axis] = static_cast<int>(std::ceil(extent[axis] * double(scale_))) + 2 * pad;
         }
+    }
+
+    void enter(kernels::ShapeHeader& header) const {
+        for (int axis = 0; axis < 3; ++axis) {
+            header.clearance_low[axis] = low_[axis];
+            // A look-up at the upper end, however it is rounded, is in the last cell.
+            header.clearance_high[axis] =
+                static_cast<float>(double(low_[axis]) + (cells_.size[axis] - 0.01) / double(scale_));
+            header.clearance_size[axis] = static_cast<uint>(cells_.size[axis]);
+        }
+        header.clearance_scale = scale_;
+        header.clearance_cell = static_cast<float>(1 / double(scale_));
+        header.clearance_unit = static_cast<float>(1 / (CLEARANCE_STEPS * double(scale_)));
+    }
+
+    float low_[3], scale_;
+    Cells cells_;
+};
+
+class Grid : GridPlace {
+public:
+    explicit Grid(const ShapeData& shape) : GridPlace(shape) {
         distance_.resize(static_cast<std::size_t>(cells_.count()));
         outside_.resize(distance_.size());
     }
@@ -93,16 +116,7 @@ public:
     }
 
     void write(Accelerators& to, Executor& executor) const {
-        for (int axis = 0; axis < 3; ++axis) {
-            to.header.clearance_low[axis] = low_[axis];
-            // A look-up at the upper end, however it is rounded, is in the last cell.
-            to.header.clearance_high[axis] =
-                static_cast<float>(double(low_[axis]) + (cells_.size[axis] - 0.01) / double(scale_));
-            to.header.clearance_size[axis] = static_cast<uint>(cells_.size[axis]);
-        }
-        to.header.clearance_scale = scale_;
-        to.header.clearance_cell = static_cast<float>(1 / double(scale_));
-        to.header.clearance_unit = static_cast<float>(1 / (CLEARANCE_STEPS * double(scale_)));
+        enter(to.header);
         to.clearances.assign(distance_.size(), 0);
         std::vector<Ball> outer, other;
         executor.each(2, 1, [&](std::uint32_t side) { (side == 0 ? outer : other) = choose_balls(side == 0); });
@@ -173,8 +187,6 @@ private:
                | radius << 16;
     }
 
-    float low_[3], scale_;
-    Cells cells_;
     std::vector<double> distance_; // of the middles, in cells
     std::vector<bool> outside_;
 };
@@ -187,6 +199,14 @@ void build_clearance_grid(const ShapeData& shape, Accelerators& to, Executor& ex
     if (stop.stop_requested()) return;
     if (to.header.outward != 0) grid.find_outside();
     grid.write(to, executor);
+}
+
+bool restore_clearance_grid(const ShapeData& shape, Accelerators& to, std::vector<kernels::uint> words) {
+    const GridPlace place(shape);
+    if (words.size() != static_cast<std::size_t>(place.cells_.count())) return false;
+    place.enter(to.header);
+    to.clearances = std::move(words);
+    return true;
 }
 
 // A scale of 0 leads every look-up to the one cell; its word is 0, no ball.

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <utility>
 
 namespace raycontact {
 
@@ -142,10 +144,8 @@ std::size_t blocks_of(std::size_t sources) {
 }
 
 // reach: how far a source reaches from its place, in lengths of its direction.
-void build(ShapeData& shape, kernels::SourceTree& tree, std::vector<Source> sources,
-           Lane (*lane_of)(const ShapeData&, uint), float reach, Executor& executor) {
-    order(sources, shape, executor);
-
+void build(ShapeData& shape, kernels::SourceTree& tree, Sources sources, Lane (*lane_of)(const ShapeData&, uint),
+           float reach) {
     tree.block_first = static_cast<uint>(shape.vertex_blocks.size());
     std::vector<Bounds> below;
     below.reserve(blocks_of(sources.size()));
@@ -198,14 +198,65 @@ void build(ShapeData& shape, kernels::SourceTree& tree, std::vector<Source> sour
     tree.cluster_levels = level;
 }
 
+// Puts them in the order of their names; false where these are not the names of all. names: room for each name.
+bool put_in_order(std::vector<Source>& sources, std::span<const uint> order, std::size_t names) {
+    if (order.size() != sources.size()) return false;
+    std::vector<uint> place(names, NONE); // of each name, in `sources`
+    for (uint i = 0; i < sources.size(); ++i) place[sources[i].name] = i;
+    std::vector<Source> ordered;
+    ordered.reserve(sources.size());
+    for (const uint name : order) {
+        if (name >= names || place[name] == NONE) return false;
+        ordered.push_back(sources[place[name]]);
+        place[name] = NONE;
+    }
+    sources = std::move(ordered);
+    return true;
+}
+
+std::vector<uint> names_of(const ShapeData& shape, const kernels::SourceTree& tree) {
+    std::vector<uint> names;
+    names.reserve(lanes * tree.block_count);
+    for (const auto& block : std::span(shape.vertex_blocks).subspan(tree.block_first, tree.block_count))
+        std::ranges::copy_if(block.vertex, std::back_inserter(names), [](uint name) { return name != NONE; });
+    return names;
+}
+
+// `arrange` puts the sources in their order, first the vertices, then the edges; false if it cannot.
+template <class Arrange>
+bool build_both(ShapeData& shape, Arrange&& arrange) {
+    shape.vertex_blocks.reserve(blocks_of(shape.points.size()) + blocks_of(edge_count(shape)));
+    const auto build_one = [&](kernels::SourceTree& tree, std::vector<Source> sources, auto lane_of, float reach) {
+        if (!arrange(sources, reach > 0)) return false;
+        build(shape, tree, sources, lane_of, reach);
+        return true;
+    };
+    if (!build_one(shape.header.vertices, vertices_of(shape), vertex_lane, 0)
+        || !build_one(shape.header.edges, edges_of(shape), edge_lane, 1))
+        return false;
+    shape.vertex_blocks.shrink_to_fit();
+    shape.clusters.shrink_to_fit();
+    return true;
+}
+
 } // namespace
 
 void build_clusters(ShapeData& shape, Executor& executor) {
-    shape.vertex_blocks.reserve(blocks_of(shape.points.size()) + blocks_of(edge_count(shape)));
-    build(shape, shape.header.vertices, vertices_of(shape), vertex_lane, 0, executor);
-    build(shape, shape.header.edges, edges_of(shape), edge_lane, 1, executor);
-    shape.vertex_blocks.shrink_to_fit();
-    shape.clusters.shrink_to_fit();
+    build_both(shape, [&](std::vector<Source>& sources, bool) {
+        order(sources, shape, executor);
+        return true;
+    });
+}
+
+SourceOrder source_order_of(const ShapeData& shape) {
+    return {names_of(shape, shape.header.vertices), names_of(shape, shape.header.edges)};
+}
+
+bool restore_clusters(ShapeData& shape, const SourceOrder& known) {
+    return build_both(shape, [&](std::vector<Source>& sources, bool of_edges) {
+        return of_edges ? put_in_order(sources, known.edges, 3 * shape.mesh.triangles.size())
+                        : put_in_order(sources, known.vertices, shape.points.size());
+    });
 }
 
 } // namespace raycontact

@@ -7,6 +7,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <utility>
 
 namespace raycontact {
 
@@ -120,6 +121,10 @@ private:
     std::vector<std::array<Cone, NODE_LANES>> cones_;
 };
 
+void set_cones_pay(const ShapeData& shape, Accelerators& to, std::size_t with_cone) {
+    to.header.cones_pay = double(with_cone) >= fine * double(shape.mesh.triangles.size()) ? 1 : 0;
+}
+
 } // namespace
 
 void build_normal_cones(const ShapeData& shape, Accelerators& to, Executor& executor, const std::stop_token& stop) {
@@ -130,7 +135,16 @@ void build_normal_cones(const ShapeData& shape, Accelerators& to, Executor& exec
     to.normal_cones.assign(TRIANGLE_LANES * shape.triangle_blocks.size(), 0);
     run_until(executor, stop, shape.triangle_blocks.size(), 16,
               [&](std::uint32_t block) { with_cone += cones.write(block, to); });
-    to.header.cones_pay = double(with_cone) >= fine * double(shape.mesh.triangles.size()) ? 1 : 0;
+    set_cones_pay(shape, to, with_cone);
+}
+
+bool restore_normal_cones(const ShapeData& shape, Accelerators& to, std::vector<kernels::uint> cones) {
+    const std::size_t lanes = to.header.outward == 0 ? 0 : TRIANGLE_LANES * shape.triangle_blocks.size();
+    if (cones.size() != lanes) return false;
+    to.normal_cones = std::move(cones);
+    const auto is_wide = [](uint cone) { return cone >> 16 != 0; };
+    set_cones_pay(shape, to, static_cast<std::size_t>(std::ranges::count_if(to.normal_cones, is_wide)));
+    return true;
 }
 
 } // namespace raycontact

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 namespace raycontact {
 
@@ -16,25 +18,43 @@ constexpr double margin = 1e-2;
 
 enum State : unsigned char { Unknown, Surface, Outside };
 
+struct Grid {
+    // Cells about half as long as an edge of the surface's triangles: memory stays a small part of the triangles'.
+    // A float32 scale: the kernels must find the very cells that are tested here. The farthest look-up is that of
+    // the upper corner, and in float32 it may round up into one cell more than in double.
+    explicit Grid(const ShapeData& shape) {
+        const auto &low = shape.header.low, &high = shape.header.high;
+        const Box own = box_of(shape);
+        const Vec3 extent = own.high - own.low;
+        const double wanted = std::clamp(1.6 * std::sqrt(double(shape.mesh.triangles.size())), 8.0, 256.0);
+        scale = static_cast<float>(wanted / std::max({extent.x, extent.y, extent.z}));
+        for (int k = 0; k < 3; ++k) cells.size[k] = static_cast<int>((high[k] - low[k]) * scale) + 1;
+    }
+
+    std::size_t words() const { return (static_cast<std::size_t>(cells.count()) + 31) / 32; }
+
+    void enter(kernels::ShapeHeader& header) const {
+        for (int k = 0; k < 3; ++k) header.grid_size[k] = static_cast<kernels::uint>(cells.size[k]);
+        for (int k = 0; k < 3; ++k) header.grid_low[k] = header.low[k];
+        header.grid_scale = scale;
+    }
+
+    Cells cells;
+    float scale; ///< cells a metre
+};
+
 } // namespace
 
 void build_outside_grid(const ShapeData& shape, Accelerators& made, const std::stop_token& stop) {
-    kernels::ShapeHeader& header = made.header;
-    if (header.outward == 0) return;
-    const Box own = box_of(shape);
-    const Vec3 &low = own.low, extent = own.high - low;
-    // Cells about half as long as an edge of the surface's triangles: memory stays a small part of the triangles'.
-    const double wanted = std::clamp(1.6 * std::sqrt(double(shape.mesh.triangles.size())), 8.0, 256.0);
-    // A float32 scale: the kernels must find the very cells that are tested here. The farthest look-up is that of
-    // the upper corner, and in float32 it may round up into one cell more than in double.
-    const float scale = static_cast<float>(wanted / std::max({extent.x, extent.y, extent.z}));
-    Cells cells;
-    for (int k = 0; k < 3; ++k) cells.size[k] = static_cast<int>((header.high[k] - header.low[k]) * scale) + 1;
+    if (made.header.outward == 0) return;
+    const Grid grid(shape);
+    const auto& [cells, scale] = grid;
+    const Vec3 low = box_of(shape).low;
     const auto cell_of = [&](const Vec3& at, double grow) {
         Cell cell;
         for (std::size_t k = 0; k < 3; ++k) {
-            const double place = std::floor((axis(at, k) - axis(low, k)) * double(scale) + grow);
-            cell[k] = std::clamp(static_cast<int>(place), 0, cells.size[k] - 1);
+            const double place = std::floor((axis(at, k) - axis(low, k)) * double(grid.scale) + grow);
+            cell[k] = std::clamp(static_cast<int>(place), 0, grid.cells.size[k] - 1);
         }
         return cell;
     };
@@ -70,12 +90,19 @@ void build_outside_grid(const ShapeData& shape, Accelerators& made, const std::s
         if (enters) states[i] = Outside;
         return enters;
     });
-    for (int k = 0; k < 3; ++k) header.grid_size[k] = static_cast<kernels::uint>(cells.size[k]);
-    for (int k = 0; k < 3; ++k) header.grid_low[k] = header.low[k];
-    header.grid_scale = scale;
-    made.outside_cells.assign((states.size() + 31) / 32, 0);
+    grid.enter(made.header);
+    made.outside_cells.assign(grid.words(), 0);
     for (std::size_t i = 0; i < states.size(); ++i)
         if (states[i] == Outside) made.outside_cells[i / 32] |= 1u << (i % 32);
+}
+
+bool restore_outside_grid(const ShapeData& shape, Accelerators& made, std::vector<kernels::uint> cells) {
+    if (cells.empty()) return true;
+    const Grid grid(shape);
+    if (made.header.outward == 0 || cells.size() != grid.words()) return false;
+    grid.enter(made.header);
+    made.outside_cells = std::move(cells);
+    return true;
 }
 
 } // namespace raycontact

@@ -49,13 +49,20 @@ void round_vertices(ShapeData& shape) {
     shape.box_max = shape.centre + high;
 }
 
-// Fills the tree, and the lanes of faces in it. Triangles without area are left out.
-void build_bvh(ShapeData& shape, std::span<const Vec3> normals, double grow, Executor& executor) {
+[[noreturn]] void refuse_saved() {
+    throw InputError("Shape::load: the bytes are damaged: they are no shape; give what save() returned");
+}
+
+// Fills the tree, and the lanes of faces in it. Triangles without area are left out. saved: null of a new one.
+void build_bvh(ShapeData& shape, std::span<const Vec3> normals, double grow, Executor& executor,
+               const TreeOrder* saved) {
     std::vector<std::uint32_t> with_area;
     for (std::uint32_t i = 0; i < normals.size(); ++i)
         if (normals[i] != Vec3{}) with_area.push_back(i);
     TreePlan plan{shape.points, shape.mesh.triangles, with_area, grow, false, NODE_LEVELS};
-    if (!build_tree(shape, plan, executor)) {
+    if (saved != nullptr) {
+        if (!restore_tree(shape, plan, *saved, executor)) refuse_saved();
+    } else if (!build_tree(shape, plan, executor)) {
         plan.balanced = true;
         if (!build_tree(shape, plan, executor))
             throw InputError("mesh '" + shape.mesh.name
@@ -100,6 +107,10 @@ std::shared_ptr<const Shape> Shape::make(const Mesh& mesh, std::uint32_t threads
 std::shared_ptr<const Shape> Shape::make(PreparedMesh mesh, std::uint32_t threads) {
     const FloatEnvironment environment;
     Executor executor(threads_for(mesh.triangles.size(), threads));
+    return std::shared_ptr<const Shape>(new Shape(build_shape(std::move(mesh), executor)));
+}
+
+std::unique_ptr<ShapeData> build_shape(PreparedMesh mesh, Executor& executor, SlowParts* saved) {
     if (mesh.triangles.empty()) throw InputError("mesh '" + mesh.name + "': no triangles; nothing to collide");
     if (mesh.vertex_index.size() != mesh.vertices.size() || mesh.triangle_index.size() != mesh.triangles.size())
         throw InputError("mesh '" + mesh.name + "': its index maps do not fit; make it with prepare_mesh()");
@@ -138,11 +149,15 @@ std::shared_ptr<const Shape> Shape::make(PreparedMesh mesh, std::uint32_t thread
     shape.header.outward = shape.header.closed != 0 && shape.mesh.report.outward ? 1 : 0;
     shape.header.tolerance = static_cast<float>(8 * rounding * shape.diagonal);
     const double grow = (shape.header.closed ? 32 : 256) * rounding * shape.diagonal;
-    build_bvh(shape, normals, grow, executor);
+    build_bvh(shape, normals, grow, executor, saved != nullptr ? &saved->tree : nullptr);
     find_slivers(shape, normals, grow, executor);
     shape.header.triangle_block_count = static_cast<kernels::uint>(shape.triangle_blocks.size());
 
-    shape.exit_distances = measure_exits(shape, normals, executor);
+    shape.exit_distances =
+        saved != nullptr ? std::move(saved->exit_distances) : measure_exits(shape, normals, executor);
+    if (shape.exit_distances.size() != shape.points.size()) refuse_saved();
+    for (std::size_t v = 0; v < shape.points.size(); ++v) // where there is no normal, there is no ray
+        if (shape.exit_distances[v] > 0 && shape.vertex_normals[v] == Vec3{}) refuse_saved();
     float longest_exit = 0, shortest_exit = UNBOUNDED;
     for (const float exit : shape.exit_distances) {
         if (exit > 0) shortest_exit = std::min(shortest_exit, exit);
@@ -156,11 +171,14 @@ std::shared_ptr<const Shape> Shape::make(PreparedMesh mesh, std::uint32_t thread
     normals = {};
     const bool large = shape.mesh.triangles.size() > many_triangles;
     if (large) platform::trim_heap(); // what the tree took; here the most memory is in use
-    build_clusters(shape, executor);
+    if (saved == nullptr)
+        build_clusters(shape, executor);
+    else if (!restore_clusters(shape, saved->sources))
+        refuse_saved();
     if (large) platform::trim_heap();
     set_box_clearance(shape.header);
     shape.set_places();
-    return std::shared_ptr<const Shape>(new Shape(std::move(data)));
+    return data;
 }
 
 void Shape::prepare(std::uint32_t threads) const {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace raycontact {
 
@@ -45,6 +46,12 @@ Supports::Supports(const ShapeData& shape, Executor& executor, const std::stop_t
         }
     });
     if (!stop.stop_requested()) reaches_ = std::move(reaches);
+}
+
+Supports::Supports(std::vector<float> reaches) {
+    const bool fits = reaches.size() == std::size_t{6} * corners * corners;
+    if (fits && std::ranges::all_of(reaches, [](float reach) { return std::isfinite(reach); }))
+        reaches_ = std::move(reaches);
 }
 
 Vec3 Supports::point(const Vec3& direction) const {

@@ -5,6 +5,7 @@
 #include "shape/shape_data.h"
 
 #include <cstdint>
+#include <span>
 #include <stop_token>
 #include <vector>
 
@@ -19,6 +20,9 @@ public:
     Supports() = default;
     /// Empty if it was asked to stop.
     Supports(const ShapeData& shape, Executor& executor, const std::stop_token& stop);
+    /// Of a table that was made. Empty if it is none: another number of values, or one that is not finite.
+    explicit Supports(std::vector<float> reaches);
+    std::span<const float> reaches() const { return reaches_; }
 
     /// Of a table that is not empty. No vertex is farther along `direction` than `point` is; the point need not be of
     /// the shape. Frame of the shape's centre, metres; the direction not zero.

@@ -204,13 +204,29 @@ def test_shapes_cross_to_other_processes(torus, bracket):
 
 
 def test_a_damaged_pickle_is_refused(torus):
-    make, (name, vertices, triangles, vertex_index, triangle_index, report) = torus.__reduce__()
-    with pytest.raises(rc.InputError, match="number of indices"):
-        make(name, vertices, triangles, vertex_index[1:], triangle_index, report)
-    with pytest.raises(rc.InputError):
-        make(name, vertices, triangles + np.uint32(1), vertex_index, triangle_index, report)
+    make, (data,) = torus.__reduce__()
+    with pytest.raises(rc.InputError, match="damaged"):
+        make(data[:-1])
     with pytest.raises(rc.InputError, match="another version"):
-        rc.MeshReport.__new__(rc.MeshReport).__setstate__(report.__getstate__()[1:])
+        rc.MeshReport.__new__(rc.MeshReport).__setstate__(torus.report.__getstate__()[1:])
+
+
+def test_a_shape_is_saved_and_loaded_with_what_was_prepared(bracket):
+    shape = rc.Shape(rc.Mesh(*meshes.torus(), name="ring"))
+    assert not rc.Shape.load(shape.save()).is_prepared
+    shape.prepare()
+    data = shape.save()
+    again = rc.Shape.load(bytearray(data))
+    assert isinstance(data, bytes) and again.is_prepared and again.save() == data
+    assert pickle.loads(pickle.dumps(shape)).is_prepared
+    poses = helpers.random_poses(30, 1.5)
+    found = rc.collide(shape, bracket, pose_b=poses)
+    assert len(found) and helpers.same(rc.collide(again, bracket, pose_b=poses), found)
+    for wrong, why in ((b"", "no shape"), (data[:-1], "damaged"), (data + b"0", "damaged"), ("text", "is a str")):
+        with pytest.raises(rc.InputError, match=why):
+            rc.Shape.load(wrong)
+    ball = rc.Shape.load(rc.ball(0.5).save())
+    assert ball.round.radius == 0.5 and rc.distance(ball, ball, pose_b=rc.pose((2, 0, 0))).distance == 1
 
 
 def test_an_object_with_vertices_and_faces_is_one_mesh_even_if_it_is_a_tuple(torus):

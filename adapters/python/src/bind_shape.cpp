@@ -11,11 +11,14 @@
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
+#include <string>
 #include <string_view>
-#include <utility>
+#include <vector>
 
 namespace raycontact::python {
 
@@ -56,25 +59,19 @@ nb::tuple three(const Vec3& v) {
     return nb::make_tuple(v.x, v.y, v.z);
 }
 
-using Indices = nb::ndarray<const std::uint32_t, nb::shape<-1>, nb::c_contig, nb::device::cpu>;
+nb::bytes save(const Shape& shape) {
+    std::vector<std::byte> bytes;
+    {
+        const WithoutGil without_gil;
+        bytes = shape.save();
+    }
+    return nb::bytes(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+}
 
-/// The shape that had these, bit by bit: equal input makes equal shapes, and what prepare_mesh() found is given.
-std::shared_ptr<Shape> remake_shape(const std::string& name, const Points& vertices, const Corners& triangles,
-                                    const Indices& vertex_index, const Indices& triangle_index,
-                                    const MeshReport& report) {
-    if (vertex_index.shape(0) != vertices.shape(0) || triangle_index.shape(0) != triangles.shape(0))
-        throw InputError("Shape: the pickle has another number of indices than of vertices or triangles");
-    PreparedMesh mesh;
-    mesh.name = name;
-    mesh.vertices = points_of(vertices);
-    mesh.report = report;
-    mesh.triangles.reserve(triangles.shape(0));
-    for (const std::uint32_t* t = triangles.data(); t != triangles.data() + triangles.size(); t += 3)
-        mesh.triangles.push_back({t[0], t[1], t[2]});
-    mesh.vertex_index.assign(vertex_index.data(), vertex_index.data() + vertex_index.size());
-    mesh.triangle_index.assign(triangle_index.data(), triangle_index.data() + triangle_index.size());
+std::shared_ptr<Shape> load(const nb::bytes& data) {
+    const auto bytes = std::as_bytes(std::span(data.c_str(), data.size()));
     const WithoutGil without_gil;
-    return std::const_pointer_cast<Shape>(Shape::make(std::move(mesh)));
+    return std::const_pointer_cast<Shape>(Shape::load(bytes));
 }
 
 } // namespace
@@ -88,6 +85,7 @@ void bind_shape(nb::module_& m) {
             "prepare", [](const Shape& shape, std::uint32_t threads) { shape.prepare(threads); }, "threads"_a,
             nb::call_guard<WithoutGil>())
         .def_prop_ro("is_prepared", &Shape::is_prepared)
+        .def("save", &save)
         .def_prop_ro("vertices", &view<double, 3, &Shape::file_vertices>, nb::rv_policy::automatic)
         .def_prop_ro("triangles", &view<std::uint32_t, 3, &Shape::triangles>, nb::rv_policy::automatic)
         .def_prop_ro("vertex_index", &view<std::uint32_t, 1, &Shape::vertex_index>, nb::rv_policy::automatic)
@@ -140,8 +138,7 @@ void bind_shape(nb::module_& m) {
             return std::const_pointer_cast<Shape>(make_plane(half_extent, thickness));
         },
         "half_extent"_a, "thickness"_a);
-    m.def("remake_shape", &remake_shape, "name"_a, "vertices"_a, "triangles"_a, "vertex_index"_a, "triangle_index"_a,
-          "report"_a);
+    m.def("load_shape", &load, "data"_a);
 }
 
 } // namespace raycontact::python
