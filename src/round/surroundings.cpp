@@ -12,6 +12,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <tuple>
 
 namespace raycontact {
 
@@ -232,7 +233,9 @@ bool Surroundings::is_step(const Spot& spot, std::span<const Spot> spots, double
 
 // Whether the surface goes on beside a capsule, to either side: no farther away than by so much of the way there.
 std::array<bool, 2> Surroundings::goes_on(const Spot& spot, double part, double slope) const {
-    const double aside = 0.01 * spot.away, near = aside + beside(spot.obstacle), most = spot.away + slope * aside;
+    // Beyond an edge the distance grows by half the square of the way: that must be more than the slope allows.
+    const double aside = std::max(0.01, 4 * slope) * spot.away, near = aside + beside(spot.obstacle),
+                 most = spot.away + slope * aside;
     std::array<bool, 2> found{};
     for (std::size_t k = 0; k < sites_.size(); ++k) {
         const Vec3 p = seen_from(k, spot.obstacle, spot.point, spot.at, part), centre = axis(k, spot.at, part);
@@ -410,6 +413,16 @@ void Surroundings::of_axis(std::size_t k, double part, std::vector<Spot>& first,
     }
 }
 
+namespace {
+
+/// By the side that a spot is on; of one side by its triangle.
+std::tuple<int, int, int, std::uint32_t> order_of(const Spot& spot) {
+    const auto rounded = [](double x) { return static_cast<int>(1e6 * x); };
+    return {rounded(spot.normal.x), rounded(spot.normal.y), rounded(spot.normal.z), spot.triangle};
+}
+
+} // namespace
+
 // Decided with all that are little farther: an edge may be a step beside a face.
 void Surroundings::spots(double part, double limit, std::vector<Spot>& out) const {
     out.clear();
@@ -425,7 +438,7 @@ void Surroundings::spots(double part, double limit, std::vector<Spot>& out) cons
     std::vector<Spot> all;
     for (std::size_t k = 0; k < sites_.size(); ++k)
         for (auto& of_part : found) {
-            std::ranges::stable_sort(of_part[k], {}, &Spot::triangle); // numbers stay while distances change
+            std::ranges::stable_sort(of_part[k], {}, order_of); // numbers stay while distances and triangles change
             all.insert(all.end(), of_part[k].begin(), of_part[k].end());
         }
     for (const Spot& s : all)

@@ -205,7 +205,9 @@ void two_round_contacts(const MovingRound& a, const MovingRound& b, double reach
             const Vec3 own = c.point - origin + (a.round.radius + c.distance) * c.normal;
             return dot(at_touch, -c.normal) >= alike && length(own - on_a) <= beside_of_end * both;
         });
-        if (is_told) return;
+        // Two convex bodies pass each other on one side: on another one they would be only if nothing stopped them.
+        const bool is_beside = !out.empty() && dot(at_touch, -out[0].normal) < alike;
+        if (is_told || is_beside) return;
         add(coming + place, p, at_touch, std::max(dot(now.between(p), at_touch) - both, 0.0), true);
     };
     const auto as_they_are = [](const Places& p) { return p; };

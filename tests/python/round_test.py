@@ -64,7 +64,7 @@ def test_round_bodies_have_contacts():
     )
     assert contacts.bodies.tolist() == [[ground, one], [ground, other], [ground, other]]
     assert sorted(contacts.point_b[1:, 0].tolist()) == pytest.approx([0.5, 1.5])
-    assert contacts.indices[1:, 1].tolist() == [0, 1], "an end of the axis each"
+    assert (contacts.indices[1:, 1] // 27).tolist() == [0, 1], "an end of the axis each"
     assert len(rc.collide(ball, ball, pose_b=rc.pose([0, 0.31, 0.4]))) == 0
     of_two = rc.collide(ball, ball, pose_b=rc.pose([0, 0.24, 0.32]))
     assert of_two.depth == pytest.approx([0.1], abs=1e-6) and of_two.normal[0] == pytest.approx([0, 0.6, 0.8], abs=1e-6)
