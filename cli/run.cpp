@@ -3,7 +3,6 @@
 
 #include "cli/common_options.h"
 #include "cli/gimpact_turns.h"
-#include "cli/number_option.h"
 #include "cli/out_option.h"
 #include "cli/progress.h"
 #include "cli/record.h"
@@ -16,6 +15,7 @@
 #include <report/counted.h>
 #include <report/report.h>
 #include <scenes/simulation.h>
+#include <view/view.h>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -43,8 +43,7 @@ using namespace raycontact::scenes;
 struct RunOptions {
     RunScene scene;
     std::string out, record;
-    std::uint32_t pictures = raycontact::report::ReportOptions().pictures;
-    bool json = false;
+    bool no_view = false, json = false;
     raycontact::Settings settings;
 };
 
@@ -142,15 +141,6 @@ std::string steps_csv(const std::vector<StepRow>& rows) {
     return text;
 }
 
-std::uint32_t pictures_from(const std::string& word) {
-    constexpr std::uint32_t most = 1000;
-    if (word == "none") return 0;
-    const auto number = read_number<std::uint32_t>(word);
-    if (!number || *number < 1 || *number > most)
-        throw InputError(fmt::format("--pictures: \"{}\" is neither a number from 1 to {} nor \"none\"", word, most));
-    return *number;
-}
-
 /// Viewers go by the ending, and a recording under another name overwrites what nobody meant.
 void check_record(const std::string& file) {
     std::string ending = std::filesystem::path(file).extension().string();
@@ -175,7 +165,7 @@ struct Outputs {
     std::optional<raycontact::output::OutFolder> folder;
 };
 
-/// With the last step's picture, where the run was cut short before that of its plan.
+/// With the last step's poses, where the run was cut short before that of its plan.
 RunLog log_of(const Simulation& scene, const std::string& summary_json) {
     RunLog log = scene.log();
     log.summary_json = summary_json;
@@ -187,21 +177,18 @@ RunLog log_of(const Simulation& scene, const std::string& summary_json) {
     return log;
 }
 
-void write_files(raycontact::output::OutFolder& folder, const RunLog& log, std::uint32_t pictures, bool cut_short) {
+/// run: null for a report without a view.
+void write_files(raycontact::output::OutFolder& folder, const RunLog& log, const raycontact::view::RunView* run,
+                 const raycontact::Settings& settings, bool cut_short) {
     const auto start = std::chrono::steady_clock::now();
-    const int before = stop_signal();
     folder.write("steps.csv", steps_csv(log.rows));
-    if (pictures > 0) std::cerr << "drawing pictures and a film for the report; --pictures none does without\n";
-    raycontact::report::ReportOptions report{pictures, compare_with_gimpact(log)};
-    Progress progress("drawing", work_of(log, report), "");
-    report.progress = [&](std::uint32_t done) { progress.show(done); };
-    report.stop = [before] { return stop_signal() != before; };
-    raycontact::report::write_report(folder, log, report);
-    progress.done();
+    const std::string view = run ? make_view(log, *run, settings).html : "";
+    raycontact::report::write_report(folder, log, view, compare_with_gimpact(log));
     folder.keep(cut_short);
-    if (stop_signal() != before) std::cerr << "drawing was ended: the report lacks pictures\n";
+    const std::filesystem::path page = folder.kept("report.html");
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
-    std::cerr << fmt::format("report: {}, made in {:.1f} s\n", folder.kept("report.html").string(), seconds.count());
+    std::cerr << fmt::format("report: {}, {:.1f} MB, made in {:.1f} s\n", page.string(),
+                             static_cast<double>(std::filesystem::file_size(page)) / 1e6, seconds.count());
 }
 
 /// Bodies pass an open mesh that come from behind its faces, and one whose faces disagree anywhere.
@@ -258,9 +245,7 @@ void run(const RunOptions& options) {
     check_common_options(options.settings);
     Outputs outputs(options);
     const auto start = std::chrono::steady_clock::now();
-    SceneDescription described = describe_scene(options.scene, options.settings);
-    if (!options.out.empty()) described.frames = std::max(raycontact::report::film_frames, options.pictures);
-    Simulation scene(std::move(described));
+    Simulation scene(describe_scene(options.scene, options.settings));
     const SceneDescription& description = scene.description();
     std::set<std::uint32_t> moving, still;
     for (const BodyStart& body : description.bodies)
@@ -270,11 +255,14 @@ void run(const RunOptions& options) {
             warn_if_open(description, body);
     for (const std::uint32_t shape : moving) warn_if_coarse(*description.shapes[shape].shape, options.settings);
     RunRecorder recorder(std::move(outputs.recording), scene);
+    std::optional<raycontact::view::RunView> view;
+    if (outputs.folder && !options.no_view) view.emplace();
     Progress progress(description.name, description.steps);
     listen_for_stop();
     for (std::uint32_t i = 0; i < description.steps && stop_signal() == 0; ++i) {
         scene.step();
         recorder.step();
+        if (view) view->add(scene.scene());
         progress.show(i + 1);
     }
     progress.done();
@@ -294,7 +282,10 @@ void run(const RunOptions& options) {
     // What cannot be written is told last: the summary of a run of hours is worth more.
     std::string error = recorder.error();
     try {
-        if (outputs.folder) write_files(*outputs.folder, log_of(scene, text), options.pictures, cut_short);
+        if (outputs.folder) {
+            const raycontact::view::RunView* const gathered = view ? &*view : nullptr;
+            write_files(*outputs.folder, log_of(scene, text), gathered, options.settings, cut_short);
+        }
     } catch (const std::exception& unwritten) {
         error += (error.empty() ? "" : "; ") + std::string(unwritten.what());
     }
@@ -312,14 +303,9 @@ void add_run(CLI::App& app) {
             "write a recording there: for `raycontact replay`, and any glTF viewer")
         ->type_name("FILE.glb");
     add_out(*command, "--out", options->out,
-            "write report.html, pictures and steps.csv there; the pictures take some ten seconds on two cores")
+            "write report.html, a 3D view of the run with plots and tables, and steps.csv there")
         ->type_name("DIR");
-    command
-        ->add_option_function<std::string>(
-            "--pictures", [options](const std::string& word) { options->pictures = pictures_from(word); },
-            "with --out: large pictures, evenly over the run, and a film of it; none: neither")
-        ->type_name("N|none")
-        ->default_str(std::to_string(options->pictures));
+    command->add_flag("--no-view", options->no_view, "with --out: a report without the 3D view");
     command->add_flag("--json", options->json, "print one JSON object on stdout");
     options->settings.speculative = raycontact::Speculative::on;
     add_common_options(*command, options->settings);
@@ -327,8 +313,8 @@ void add_run(CLI::App& app) {
     command->footer(stop_footer);
     command->callback([command, options] {
         if (command->count("--record") > 0) check_record(options->record);
-        if (command->count("--pictures") > 0 && options->out.empty())
-            throw InputError("--pictures: is for the report; give --out DIR, too");
+        if (options->no_view && options->out.empty())
+            throw InputError("--no-view: is for the report; give --out DIR, too");
         run(*options);
     });
 }

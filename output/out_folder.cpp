@@ -45,31 +45,10 @@ void OutFolder::write(const std::string& name, std::string_view bytes) {
     entry.written = true;
 }
 
-void OutFolder::supersede(const std::string& begin, const std::string& end) {
-    superseded_.emplace_back(begin, end);
-}
-
-void OutFolder::remove_superseded() const {
-    for (const auto& [begin, end] : superseded_) {
-        const fs::path parent = fs::path(begin).parent_path();
-        std::error_code ignored;
-        std::vector<fs::path> gone; // first: removing from a folder while it is read may skip entries
-        for (fs::directory_iterator entry(folder_ / parent, ignored), last; !ignored && entry != last;
-             entry.increment(ignored)) {
-            const std::string name = (parent / entry->path().filename()).string();
-            if (!name.starts_with(begin) || !name.ends_with(end) || name.size() < begin.size() + end.size()) continue;
-            const auto written = files_.find(name);
-            if (written == files_.end() || !written->second.written) gone.push_back(entry->path());
-        }
-        for (const fs::path& file : gone) fs::remove(file, ignored);
-    }
-}
-
 std::vector<fs::path> OutFolder::keep(bool cut_short) {
     const bool beside =
         cut_short && std::ranges::any_of(files_, [](const auto& named) { return named.second.file.is_there(); });
     ending_ = beside ? ".cut" : "";
-    if (!beside && !cut_short) remove_superseded();
     std::vector<fs::path> kept;
     for (auto& [name, entry] : files_)
         if (entry.written) kept.push_back(entry.file.keep(beside));

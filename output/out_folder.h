@@ -7,7 +7,6 @@
 #include <map>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace raycontact::output {
@@ -25,9 +24,6 @@ public:
     void claim(const std::string& name);
     /// Claims the file, if that was not done before, and writes all of it. Throws as OutFile does.
     void write(const std::string& name, std::string_view bytes);
-    /// Files of an earlier run, whose names (with a folder before them) begin and end so, go in keep(), unless they
-    /// were written anew: beside these results they would mislead. They stay where the results were cut short.
-    void supersede(const std::string& begin, const std::string& end);
     /// What was written takes its name; NAME.cut, all of it, where results were cut short and any of the names exists.
     /// Returns where it all is now.
     std::vector<std::filesystem::path> keep(bool cut_short = false);
@@ -41,12 +37,10 @@ private:
         bool written = false;
     };
     void make(const std::filesystem::path& folder);
-    void remove_superseded() const;
     std::filesystem::path folder_;
     std::vector<std::filesystem::path> made_; ///< outermost first
     std::string ending_;
     std::map<std::string, Entry> files_;
-    std::vector<std::pair<std::string, std::string>> superseded_; ///< begins and ends of names
 };
 
 } // namespace raycontact::output

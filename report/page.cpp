@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <report/page.h>
 
-#include <report/image.h>
 #include <report/svg.h>
 
 #include <fmt/format.h>
@@ -17,15 +16,10 @@ body{margin:0;background:var(--paper);color:var(--ink);font:16px/1.55 system-ui,
 main{max-width:1180px;margin:0 auto;padding:36px 24px 48px}
 h1{font-size:30px;line-height:1.2;margin:0 0 10px;letter-spacing:-.01em}
 h2{font-size:19px;margin:38px 0 12px}
-.lead{max-width:110ch;margin:0 0 24px;color:var(--ink)}
-.stage{margin:0;position:relative;border-radius:12px;overflow:hidden;background:#dfe5ec;box-shadow:0 1px 3px #0003}
-.stage img{display:block;width:100%;height:auto}
-.stage figcaption{position:absolute;left:14px;bottom:12px;padding:3px 11px;border-radius:99px;background:#000a;color:#fff;font-size:14px;font-variant-numeric:tabular-nums}
-.strip{display:grid;grid-template-columns:repeat(auto-fill,minmax(128px,1fr));gap:8px;margin-top:8px}
-.strip button{padding:0;border:0;border-radius:7px;overflow:hidden;cursor:pointer;background:none;color:var(--soft);font:12px/1.7 inherit;font-family:inherit;outline-offset:2px}
-.strip img{display:block;width:100%;height:auto;border-radius:7px;border:2px solid transparent}
-.strip button[aria-pressed=true]{color:var(--ink)}
-.strip button[aria-pressed=true] img{border-color:var(--c0)}
+.lead{max-width:110ch;margin:18px 0 0;color:var(--ink)}
+.view{margin:0}.view iframe{display:block;width:100%;height:min(78vh,760px);border:1px solid var(--rule);border-radius:10px}
+.view figcaption,.soft{color:var(--soft);font-size:14px}
+@media print{.view{display:none}}
 .plots{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,440px),1fr));gap:14px}
 .plot{margin:0;padding:12px 14px 8px;background:var(--card);border:1px solid var(--rule);border-radius:10px}
 .plot figcaption{font-size:14px;display:flex;gap:10px;flex-wrap:wrap;align-items:baseline;min-height:1.6em}
@@ -39,9 +33,6 @@ svg{display:block;width:100%;height:auto;touch-action:pan-y}
 .tick,.label{fill:var(--soft);font-size:11.5px;font-variant-numeric:tabular-nums}
 .line{fill:none;stroke-width:1.6;stroke-linejoin:round}.s0{stroke:var(--c0)}.s1{stroke:var(--c1)}
 .cursor line{stroke:var(--soft);stroke-dasharray:3 3}.cursor circle{fill:var(--card);stroke-width:2}
-.film{margin:22px auto 0;max-width:860px}.film img{display:block;width:100%;height:auto;border-radius:10px}
-.film figcaption,.soft{color:var(--soft);font-size:14px}
-@media(prefers-reduced-motion:reduce){.film{display:none}}
 .wide{overflow-x:auto}
 table{border-collapse:collapse;width:100%;background:var(--card);border:1px solid var(--rule);border-radius:10px;overflow:hidden;font-size:15px}
 td,th{padding:7px 14px;text-align:left;border-top:1px solid var(--rule);vertical-align:top}
@@ -55,15 +46,6 @@ footer{margin-top:34px;color:var(--soft);font-size:13.5px}
 
 constexpr const char* script = R"js(
 const data=JSON.parse(document.getElementById('data').textContent);
-const big=document.querySelector('.stage img'),said=document.querySelector('.stage figcaption');
-const stills=[...document.querySelectorAll('.strip button')];
-let shown=-1;
-function show(k){shown=k;stills.forEach((b,i)=>b.setAttribute('aria-pressed',i===k));
-  const i=stills[k].querySelector('img');big.src=i.src;big.alt=i.alt;said.textContent=i.alt}
-stills.forEach((b,k)=>{b.onclick=b.onmouseenter=b.onfocus=()=>show(k)});
-document.addEventListener('keydown',e=>{const d={ArrowRight:1,ArrowLeft:-1}[e.key];
-  if(d&&stills.length){const k=Math.min(Math.max(shown+d,0),stills.length-1);show(k);stills[k].focus()}});
-if(stills.length)show(stills.length-1);
 function read(v){if(v===null||!isFinite(v))return '-';const a=Math.abs(v);
   return a>=1000?Math.round(v).toLocaleString('fr').replace(/\s/g,'\u202f'):String(+v.toPrecision(4))}
 const charts=[...document.querySelectorAll('.plot')].map((figure,k)=>{
@@ -86,19 +68,6 @@ charts.forEach(c=>{c.svg.onpointermove=e=>{const r=c.svg.getBoundingClientRect()
   c.svg.onpointerleave=leave});
 )js";
 
-std::string strip(const std::vector<Still>& stills) {
-    std::string html =
-        "<figure class=\"stage\"><img alt=\"\"><figcaption></figcaption></figure>\n<div class=\"strip\">\n";
-    for (const Still& still : stills) {
-        const std::string caption = escape_html(still.caption);
-        html += fmt::format(
-            "<button type=\"button\" aria-pressed=\"false\"><img alt=\"{0}\" src=\"data:image/jpeg;base64,{1}\">{0}"
-            "</button>\n",
-            caption, base64(still.jpeg));
-    }
-    return html + "</div>\n";
-}
-
 std::string table(const std::vector<Row>& rows) {
     std::string html =
         "<div class=\"wide\"><table><thead><tr><th>figure</th><th style=\"text-align:right\">value</th><th>unit</th>"
@@ -117,12 +86,12 @@ std::string make_page(const Page& page) {
                        "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">";
     html += "<link rel=\"icon\" href=\"data:,\"><title>" + escape_html(page.title) + "</title><style>" + style
             + "</style></head>\n<body><main>\n";
-    html += "<h1>" + escape_html(page.title) + "</h1>\n<p class=\"lead\">" + escape_html(page.summary) + "</p>\n";
-    if (!page.stills.empty()) html += strip(page.stills);
-    if (!page.film.empty())
-        html += fmt::format("<figure class=\"film\"><img alt=\"{0}\" src=\"data:image/webp;base64,{1}\"><figcaption>{0}"
-                            "</figcaption></figure>\n",
-                            escape_html(page.film_caption), base64(page.film));
+    html += "<h1>" + escape_html(page.title) + "</h1>\n";
+    if (!page.view.empty())
+        html += "<figure class=\"view\"><iframe title=\"The run in 3D\" srcdoc=\"" + escape_html(page.view)
+                + "\"></iframe><figcaption>Drag to look around, with shift to move. After a click the wheel zooms and "
+                  "the space bar plays.</figcaption></figure>\n";
+    html += "<p class=\"lead\">" + escape_html(page.summary) + "</p>\n";
     html += "<h2>Step by step</h2>\n<div class=\"plots\">\n";
     for (const Plot& plot : page.plots) html += plot_figure(plot);
     html += "</div>\n<h2>Figures of the whole run</h2>\n" + table(page.rows);

@@ -9,12 +9,6 @@
 
 namespace raycontact::report {
 
-/// A picture of the film strip, already encoded.
-struct Still {
-    std::string jpeg;    ///< the bytes of the file
-    std::string caption; ///< step and time
-};
-
 /// A figure of the table: what it is, its value, its unit, and what it means in a few words.
 struct Row {
     std::string name, value, unit, meaning;
@@ -31,9 +25,7 @@ struct Comparison {
 struct Page {
     std::string title;
     std::string summary;
-    std::vector<Still> stills;
-    std::string film; ///< the bytes of an animated WebP; empty: none
-    std::string film_caption;
+    std::string view;        ///< a page of its own, shown in a frame; empty: none
     std::vector<Plot> plots; ///< over the same steps
     std::vector<Row> rows;
     std::string zeros; ///< what would be rows of zeros, in one sentence; empty: none

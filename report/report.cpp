@@ -1,39 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <report/report.h>
 
-#include <report/image.h>
 #include <report/page.h>
-#include <report/render.h>
-
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 namespace raycontact::report {
 namespace {
 
-constexpr std::uint32_t picture_width = 1600, picture_height = 900, film_width = 640, film_height = 360;
-constexpr std::uint32_t picture_cost = 12; // in frames of the film
-constexpr int jpeg_quality = 82;           // in the page; the files beside it are PNG
-
 const char* const page_name = "report.html";
-const char* const film_name = "pictures/film.webp";
-
-/// The first, the last, and as many as fit evenly between.
-std::vector<std::size_t> chosen_frames(std::size_t count, std::size_t most) {
-    std::vector<std::size_t> chosen;
-    const std::size_t wanted = std::min(count, most);
-    for (std::size_t k = 0; k < wanted; ++k) chosen.push_back(wanted > 1 ? k * (count - 1) / (wanted - 1) : count - 1);
-    return chosen;
-}
-
-/// Those of the film; of a run with a few frames none.
-std::vector<std::size_t> film_frames_of(const scenes::RunLog& log, const ReportOptions& options) {
-    if (options.pictures == 0 || log.frames.size() < 3) return {};
-    return chosen_frames(log.frames.size(), film_frames);
-}
 
 template <class Value>
 Line line(const scenes::RunLog& log, const char* name, Value value) {
@@ -110,62 +86,19 @@ std::vector<Plot> plots_of(const scenes::RunLog& log) {
     return plots;
 }
 
-/// As long as the run where it can be shown so.
-std::string film_of(const scenes::RunLog& log, const Renderer& renderer, const ReportOptions& options,
-                    std::uint32_t& done) {
-    std::vector<Image> images;
-    for (const std::size_t k : film_frames_of(log, options)) {
-        if (options.stop()) return {};
-        images.push_back(renderer.render_for_film(log.frames[k], film_width, film_height));
-        options.progress(++done);
-    }
-    if (images.empty()) return {};
-    const double seconds = static_cast<double>(log.rows.size()) * log.dt;
-    const double each = 1000 * seconds / static_cast<double>(images.size());
-    return encode_webp(images, static_cast<int>(std::clamp(each, 60.0, 420.0)));
-}
-
 } // namespace
 
 void claim_report(output::OutFolder& folder) {
     folder.claim(page_name);
-    folder.claim(film_name);
-    folder.supersede("pictures/step-", ".png");
-    folder.supersede("pictures/film", ".webp");
 }
 
-std::uint32_t work_of(const scenes::RunLog& log, const ReportOptions& options) {
-    const std::size_t pictures = chosen_frames(log.frames.size(), options.pictures).size();
-    return static_cast<std::uint32_t>(picture_cost * pictures + film_frames_of(log, options).size());
-}
-
-void write_report(output::OutFolder& folder, const scenes::RunLog& log, const ReportOptions& options) {
+void write_report(output::OutFolder& folder, const scenes::RunLog& log, const std::string& view,
+                  const Comparison& comparison) {
     Page page;
     describe(log, page);
+    page.view = view;
     page.plots = plots_of(log);
-    page.comparison = options.comparison;
-    std::optional<Renderer> renderer; // building its scenes takes a while
-    if (options.pictures > 0) renderer.emplace(log);
-    std::uint32_t done = 0; // of work_of()
-    for (const std::size_t k : chosen_frames(log.frames.size(), options.pictures)) {
-        if (options.stop()) break;
-        const scenes::Frame& frame = log.frames[k];
-        const Image image = renderer->render(frame, picture_width, picture_height);
-        folder.write(fmt::format("pictures/step-{:03}.png", frame.step), encode_png(image));
-        page.stills.push_back({encode_jpeg(image, jpeg_quality),
-                               fmt::format("step {}, {:.1f} s", frame.step, (frame.step + 1) * log.dt)});
-        options.progress(done += picture_cost);
-    }
-    if (renderer) page.film = film_of(log, *renderer, options, done);
-    if (!page.film.empty()) {
-        folder.write(film_name, page.film);
-        page.film_caption = fmt::format("The whole run, {:.3g} s", static_cast<double>(log.rows.size()) * log.dt);
-    }
-    if (!page.stills.empty() || !page.film.empty())
-        page.footer = fmt::format("Pictures: Embree, sun and sky{}; colours tell bodies apart and mean nothing else. "
-                                  "The camera follows the pile from picture to picture. {}",
-                                  log.slab || log.plane ? ", one ground square is 1 m" : "", page.footer);
-    if (done < work_of(log, options)) page.footer = "Drawing was ended before all pictures were made. " + page.footer;
+    page.comparison = comparison;
     folder.write(page_name, make_page(page));
 }
 

@@ -53,7 +53,7 @@ constexpr Known known[] = {
     {"below_ground", "Below ground", "bodies", "whose centre is lower than the ground at the end"},
     {"flown_off", "Flown off", "bodies",
      "beside the ground, in built-in scenes also higher than any started, at the end"},
-    {"wall_ms", "Wall clock", "s", "all steps together, setup included, pictures not", 0.001},
+    {"wall_ms", "Wall clock", "s", "all steps together, setup included, report not", 0.001},
     {"step_ms.median", "Step, median", "ms", "wall clock: detection and response"},
     {"step_ms.p95", "Step, 95th percentile", "ms", "one step in twenty takes longer"},
     {"narrow_ms.median", "Narrow phase, median", "ms", "wall clock of contact finding alone"},

@@ -39,7 +39,6 @@ struct Outcome {
     std::vector<Number> numbers;
     std::vector<report::Plot> plots;
     std::vector<Table> tables;
-    std::vector<std::string> pictures; ///< JPEG, base64
     std::vector<PackedView> views;
     std::vector<std::string> paragraphs; ///< what was done, what differs and why
 };

@@ -28,7 +28,6 @@ th,td{text-align:left;vertical-align:top;padding:5px 10px;border-bottom:1px soli
 .passed,.reached{color:#00704f;font-weight:bold}.missed{color:#b03a00;font-weight:bold}.open{color:#6a7079;font-weight:bold}
 .view{width:100%;height:min(80vh,720px);border:1px solid #e4e1dc;border-radius:10px}
 button{font:inherit;padding:6px 16px;border:1px solid #6a7079;border-radius:8px;background:#fff;cursor:pointer}
-img{display:block;width:100%;height:auto;border-radius:10px;margin:14px 0}
 @media(max-width:700px){.numbers,.numbers tbody,.numbers tr,.numbers td{display:block}.numbers{min-width:0}
 .numbers tr{padding:8px 10px;border-bottom:1px solid #e4e1dc}.numbers tr:first-child{display:none}.numbers td{padding:0;border:0}
 .numbers td:first-child{font-weight:bold;overflow-wrap:anywhere}.numbers td:nth-child(n+2):nth-child(-n+5){display:inline;margin-right:10px}
@@ -81,8 +80,6 @@ std::string section(const Section& s) {
     std::string html = fmt::format("<h2 id=\"{}\">{}</h2>\n", escape_html(s.name), escape_html(s.title));
     for (const std::string& text : s.outcome.paragraphs) html += paragraph(text);
     if (!s.outcome.numbers.empty()) html += verdicts(s.outcome.numbers);
-    for (const std::string& picture : s.outcome.pictures)
-        html += "<img alt=\"the scene after its last step\" src=\"data:image/jpeg;base64," + picture + "\">\n";
     for (const PackedView& view : s.outcome.views)
         html += fmt::format("<p><button data-view=\"{0}\">Open the 3D view</button> <span class=\"soft\">orbit, play, "
                             "rays, contacts, predictions; {1:.1f} MB, already in this page; needs scripts and WebGL 2"

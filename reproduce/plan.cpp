@@ -22,8 +22,7 @@ Plan quick_plan() {
             .thresholds = {0.01},
             .volume_every = 30,
             .orientations = 100,
-            .depths = 10,
-            .picture_width = 1280};
+            .depths = 10};
 }
 
 Plan tiny_plan() {
@@ -34,8 +33,7 @@ Plan tiny_plan() {
             .thresholds = {0.01},
             .volume_every = 10,
             .orientations = 6,
-            .depths = 3,
-            .picture_width = 96};
+            .depths = 3};
 }
 
 // But for edges, which the paper has not.

@@ -39,7 +39,6 @@ struct Plan {
     std::vector<double> thresholds{0.01, 0.02, 0.08}; ///< metres, beside the fixed one; for lengths
     std::uint32_t volume_every = 20;                  ///< steps; for volume
     std::uint32_t orientations = 400, depths = 20;
-    std::uint32_t picture_width = 1920;
     Constants constants{};
 
     bool is_full() const { return name == "full"; }

@@ -3,8 +3,6 @@
 #include <reproduce/pair_lengths.h>
 
 #include <recording/writer.h>
-#include <report/image.h>
-#include <report/render.h>
 #include <scenes/avalanche.h>
 #include <scenes/rain.h>
 #include <scenes/simulation.h>
@@ -17,7 +15,6 @@ namespace raycontact::reproduce {
 namespace {
 
 constexpr std::uint64_t small_animation = std::uint64_t{4} << 20; // recordings are kept to be followed, not looked at
-constexpr int jpeg_quality = 88;
 
 /// Bullet as it comes: its solver's defaults, the friction of two bodies of 0.5 each, at most four points a pair, none
 /// kept longer than its contact.
@@ -40,19 +37,13 @@ scenes::SceneDescription described(const SimulationOptions& options) {
     return options.scene == "rain" ? scenes::rain(how) : scenes::avalanche(how);
 }
 
-std::string picture(const scenes::RunLog& log, std::uint32_t width) {
-    const report::Renderer renderer(log);
-    return report::base64(report::encode_jpeg(renderer.render(log.frames.back(), width, width * 9 / 16), jpeg_quality));
-}
-
 } // namespace
 
 std::vector<std::string> scene_names() {
     return {"avalanche", "rain"};
 }
 
-Json simulate(const SimulationOptions& options, const std::filesystem::path& file, std::uint32_t picture_width,
-              const Tick& tick) {
+Json simulate(const SimulationOptions& options, const std::filesystem::path& file, const Tick& tick) {
     scenes::Simulation scene(described(options));
     const scenes::RunLog& log = scene.log();
     std::optional<recording::Writer> writer;
@@ -93,7 +84,6 @@ Json simulate(const SimulationOptions& options, const std::filesystem::path& fil
     result["longest_pair_depth"] = pairs.longest_depth();
     result["mesh_source"] = log.mesh_source;
     result["hash"] = scene.hash();
-    if (picture_width > 0) result["picture"] = picture(log, picture_width);
     return result;
 }
 

@@ -119,7 +119,7 @@ Experiment table2(const Workshop& shop) {
                     e.parts.push_back({fmt::format("table2-{}-{}-{}seed{}", scene, to_string(direction),
                                                    speculative ? "speculative-" : "", seed),
                                        shop.key("table2", options), Workshop::cost(options),
-                                       [options](const Tick& tick) { return simulate(options, {}, 0, tick); }});
+                                       [options](const Tick& tick) { return simulate(options, {}, tick); }});
                 }
     e.show = [&shop](const std::vector<Json>& found) { return show(shop, found); };
     return e;

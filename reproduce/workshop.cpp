@@ -69,27 +69,25 @@ SimulationOptions Workshop::base(const std::string& scene) const {
 
 Part Workshop::base_part(const std::string& scene) const {
     const SimulationOptions options = base(scene);
-    Json settings = key("scene", options);
-    settings["settings"]["picture_width"] = plan_.picture_width;
-    return {"scene-" + scene, settings, cost(options),
-            [this, options](const Tick& tick) { return simulate_recorded(options, true, tick); }};
+    return {"scene-" + scene, key("scene", options), cost(options),
+            [this, options](const Tick& tick) { return simulate_recorded(options, tick); }};
 }
 
 std::filesystem::path Workshop::recording_file(const SimulationOptions& options) const {
     return cache_.file(name_of("recording", options), key("recording", options), ".glb");
 }
 
-Json Workshop::simulate_recorded(const SimulationOptions& options, bool picture, const Tick& tick) const {
+Json Workshop::simulate_recorded(const SimulationOptions& options, const Tick& tick) const {
     const std::filesystem::path file = recording_file(options);
     const std::filesystem::path draft = std::filesystem::path(file).replace_extension(".part.glb");
-    Json result = simulate(options, draft, picture ? plan_.picture_width : 0, tick);
+    Json result = simulate(options, draft, tick);
     std::filesystem::rename(draft, file);
     return result;
 }
 
 std::filesystem::path Workshop::recording(const SimulationOptions& options, const Tick& tick) const {
     std::filesystem::path file = recording_file(options);
-    if (!is_whole(file)) simulate_recorded(options, false, tick);
+    if (!is_whole(file)) simulate_recorded(options, tick);
     return file;
 }
 

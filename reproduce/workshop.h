@@ -50,7 +50,7 @@ public:
     SimulationOptions driven_by(Method method, const std::string& scene, std::uint64_t seed = 1) const;
     /// The simulation whose poses are the same for every method: by the library's defaults, whose contacts are exact.
     SimulationOptions base(const std::string& scene) const;
-    /// Its Part: pairs, contacts, a picture; its recording is kept.
+    /// Its Part: pairs, contacts; its recording is kept.
     Part base_part(const std::string& scene) const;
 
     /// The simulation's recording, made where it is missing or not whole.
@@ -62,7 +62,7 @@ public:
 
 private:
     std::filesystem::path recording_file(const SimulationOptions& options) const;
-    Json simulate_recorded(const SimulationOptions& options, bool picture, const Tick& tick) const;
+    Json simulate_recorded(const SimulationOptions& options, const Tick& tick) const;
 
     Plan plan_;
     Cache cache_;
@@ -70,9 +70,8 @@ private:
 };
 
 /// Runs a simulation; writes a recording unless `file` is empty. {"pairs", "contacts", "ray_length",
-/// "depth_length": a number a step; "triangles" of the moving bodies, "mesh_source", "hash", "picture"}.
-Json simulate(const SimulationOptions& options, const std::filesystem::path& file, std::uint32_t picture_width,
-              const Tick& tick);
+/// "depth_length": a number a step; "triangles" of the moving bodies, "mesh_source", "hash"}.
+Json simulate(const SimulationOptions& options, const std::filesystem::path& file, const Tick& tick);
 
 Json to_json(const Settings& settings);
 

@@ -114,7 +114,6 @@ Outcome show(const Workshop& shop, const std::string& scene, const Json& base, c
                               of["other_triangle"].dump(), percent(100 * wrong / std::max(sum(rays), 1.0), 4)});
     }
     out.tables.push_back(table);
-    out.pictures.push_back(base["picture"].get<std::string>());
     out.paragraphs = {
         fmt::format("The {} of seed 1 ({} bodies, {} steps; {}) runs with exact contacts; all methods then follow its "
                     "poses. Constants fixed: displacementThreshold {} m, confidence {}, distanceExtension {} m, maxIt "

@@ -57,7 +57,7 @@ struct SceneDescription {
     bool plane = false;                ///< an endless ground z = 0, whose contacts are none of meshes and not counted
     Vec3 gravity{0, 0, -9.81};
     double dt = 1.0 / 60;      ///< of a step; the solver takes one substep
-    std::uint32_t steps = 600; ///< planned; the frames kept for pictures are spread over these
+    std::uint32_t steps = 600; ///< planned; the log's frames are spread over these
     std::uint32_t frames = 8;
     Response response;
     Settings settings;         ///< of RayContact

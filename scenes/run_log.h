@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,7 +25,7 @@ struct StepRow : StepStats {
     double median_speed = 0;    ///< of the moving bodies, m/s
 };
 
-/// Poses of the bodies there are at the end of a step, for pictures. Body k is body k of the run's lists; those that
+/// Poses of the bodies there are at the end of a step, for comparisons. Body k is body k of the run's lists; those that
 /// come later have no pose yet.
 struct Frame {
     std::uint32_t step = 0;
@@ -42,8 +41,6 @@ struct RunLog {
     std::vector<std::shared_ptr<const Shape>> shapes; ///< distinct shapes
     std::vector<std::uint32_t> body_shape;            ///< index into shapes, per body, in the order in which they came
     std::vector<bool> body_moves;                     ///< false for the ground
-    std::optional<std::uint32_t> slab;                ///< the body that is a slab of ground
-    std::optional<double> plane;                      ///< height z of an endless ground that is no body, metres
     std::vector<StepRow> rows;                        ///< one a step
     std::vector<Frame> frames;                        ///< a few, evenly over the run, the first and last included
     std::string mesh_source;                          ///< what the meshes are and where they came from, for a person

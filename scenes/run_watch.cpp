@@ -17,8 +17,6 @@ RunWatch::RunWatch(const SceneDescription& description)
     log_.seed = description.seed;
     log_.dt = description.dt;
     log_.mesh_source = meshes_in_words(description);
-    log_.slab = description.slab;
-    if (description.plane) log_.plane = 0;
     for (const SceneShape& shape : description.shapes) log_.shapes.push_back(shape.shape);
 }
 

@@ -8,7 +8,7 @@ packages_build=(
     libexpat1-dev libminizip-dev zlib1g-dev                            # its 3MF files, without which it builds; BCF
     ocl-icd-opencl-dev opencl-c-headers                                # its OpenCL devices; it builds without them
     libbullet-dev                                                      # the Bullet adapter
-    libcli11-dev libfmt-dev libmeshoptimizer-dev libembree-dev libstb-dev libwebp-dev # the program, its scenes and report
+    libcli11-dev libfmt-dev libmeshoptimizer-dev                      # the program, its scenes and report
 )
 packages_core=( # scripts/test core: the library without OpenCL devices, and its own tests
     g++ cmake ninja-build pkg-config libtbb-dev nlohmann-json3-dev libxxhash-dev libexpat1-dev libminizip-dev zlib1g-dev libgtest-dev
@@ -19,7 +19,7 @@ packages_test=(libgtest-dev libtinyobjloader-dev libtinygltf-dev libassimp-dev l
     assimp-testmodels libcgal-demo # mesh files of other programs
     python3-pip # brings the CUDA compiler that the kernels are checked with
     chromium python3) # open the pages
-packages_bench=(libfcl-dev libode-dev)                                # peers of `raycontact-bench peers`, both optional
+packages_bench=(libembree-dev libfcl-dev libode-dev)                  # peers of `raycontact-bench peers`; without Embree it is not built
 packages_python=(python3-dev python3-venv)                            # the Python package; the rest comes from PyPI
 packages_reference=(doxygen)
 packages_package=(dpkg-dev file)

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <view/blob.h>
 
-#include <report/image.h>
-
 #include <zlib.h>
 
 #include <stdexcept>
+#include <string_view>
 
 namespace raycontact::view {
 
@@ -17,12 +16,24 @@ Bytes split_bytes(std::span<const std::uint16_t> numbers) {
     return bytes;
 }
 
+std::string base64(std::span<const unsigned char> bytes) {
+    constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    std::string text;
+    text.reserve((bytes.size() + 2) / 3 * 4);
+    for (std::size_t k = 0; k < bytes.size(); k += 3) {
+        std::uint32_t word = 0;
+        for (std::size_t i = 0; i < 3; ++i) word = word << 8 | (k + i < bytes.size() ? bytes[k + i] : 0u);
+        for (std::size_t i = 0; i < 4; ++i) text += k + i <= bytes.size() ? digits[word >> (18 - 6 * i) & 63u] : '=';
+    }
+    return text;
+}
+
 std::string blob(std::span<const unsigned char> bytes) {
     uLongf length = compressBound(static_cast<uLong>(bytes.size()));
     Bytes packed(length);
     const int status = compress2(packed.data(), &length, bytes.data(), static_cast<uLong>(bytes.size()), 9);
     if (status != Z_OK) throw std::runtime_error("view: zlib failed (" + std::to_string(status) + ")");
-    return report::base64({reinterpret_cast<const char*>(packed.data()), length});
+    return base64(std::span(packed).first(length));
 }
 
 } // namespace raycontact::view

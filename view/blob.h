@@ -21,6 +21,8 @@ inline std::uint16_t quantised(double part) {
 /// Of numbers of 16 bits: first every lower byte, then every upper one. Neighbours that are alike then lie together.
 Bytes split_bytes(std::span<const std::uint16_t> numbers);
 
+std::string base64(std::span<const unsigned char> bytes);
+
 /// zlib-compressed, in base64: what the page unpacks with DecompressionStream("deflate").
 std::string blob(std::span<const unsigned char> bytes);
 

@@ -79,6 +79,16 @@ LayerStep read_layer(const Scene& scene, std::uint32_t step) {
     return layer;
 }
 
+void Found::add(const Scene& scene, bool with_layer) {
+    if (with_layer) layers.push_back(read_layer(scene, static_cast<std::uint32_t>(pairs.size())));
+    const StepStats& stats = scene.stats();
+    pairs.push_back(stats.pairs);
+    contacts.push_back(stats.contacts);
+    depths.push_back(stats.depth_max);
+    for (std::size_t k = devices.size(); k < stats.details.work.size(); ++k)
+        devices.push_back(stats.details.work[k].device);
+}
+
 LayerScale scale_of(const std::vector<LayerStep>& steps) {
     constexpr double far = std::numeric_limits<double>::infinity();
     LayerScale scale;

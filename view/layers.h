@@ -7,6 +7,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace raycontact::view {
@@ -29,6 +30,17 @@ struct LayerStep {
 
 /// Of the step that the scene has just done.
 LayerStep read_layer(const Scene& scene, std::uint32_t step);
+
+/// What the steps of a run found.
+struct Found {
+    std::vector<LayerStep> layers;              ///< of some steps
+    std::vector<std::uint64_t> pairs, contacts; ///< by step
+    std::vector<double> depths;                 ///< of the deepest contact of each step, metres
+    std::vector<std::string> devices;
+
+    /// The step that the scene has just done, which is the next one.
+    void add(const Scene& scene, bool with_layer);
+};
 
 /// Over what the 16 bits of a number are spread.
 struct LayerScale {

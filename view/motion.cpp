@@ -21,6 +21,20 @@ Kept kept_of(const Pose& pose) {
     return {{pose.translation.x, pose.translation.y, pose.translation.z}, recording::quaternion(pose.rotation)};
 }
 
+/// Both signs of a quaternion are the same turn: takes the one nearer to that before.
+void turn_near(const Kept& before, Kept& now) {
+    double alike = 0;
+    for (std::size_t k = 0; k < 4; ++k) alike += now.turn[k] * before.turn[k];
+    if (alike < 0)
+        for (double& part : now.turn) part = -part;
+}
+
+/// Of nothing yet.
+void begin_box(Motion& motion) {
+    motion.low.fill(std::numeric_limits<double>::infinity());
+    motion.high.fill(-std::numeric_limits<double>::infinity());
+}
+
 void enclose(const Kept& kept, Motion& motion) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
         motion.low[axis] = std::min(motion.low[axis], kept.place[axis]);
@@ -64,8 +78,7 @@ Motion read_motion(recording::Reader& reader, std::uint32_t stride,
         motion.moves.push_back(std::min(body.end_step, reader.steps()) - body.first_step < 2);
     std::vector<Pose> poses, first(bodies.size());
     std::vector<Pair> pairs;
-    motion.low.fill(std::numeric_limits<double>::infinity());
-    motion.high.fill(-std::numeric_limits<double>::infinity());
+    begin_box(motion);
     for (std::uint32_t i = 0; i < reader.steps(); ++i) {
         // Every step: a body may come and go between two that are kept, and reading in order is cheap.
         reader.read_step(i, poses, pairs);
@@ -79,11 +92,7 @@ Motion read_motion(recording::Reader& reader, std::uint32_t stride,
             Kept now = kept_of(pose);
             Kept* const own = &kept[b * motion.kept];
             if (bodies[b].first_step == i) std::fill(own, own + at, now);
-            const auto& last = own[at == 0 ? 0 : at - 1].turn; // both signs are the same turn: take the nearer one
-            const double alike =
-                now.turn[0] * last[0] + now.turn[1] * last[1] + now.turn[2] * last[2] + now.turn[3] * last[3];
-            if (alike < 0)
-                for (double& part : now.turn) part = -part;
+            turn_near(own[at == 0 ? 0 : at - 1], now);
             own[at] = now;
             enclose(now, motion);
         }
@@ -99,13 +108,33 @@ Motion read_motion(recording::Reader& reader, std::uint32_t stride,
     return motion;
 }
 
+Motion motion_of(const std::vector<std::vector<Pose>>& steps, std::uint32_t stride, const std::vector<bool>& moves) {
+    Motion motion;
+    motion.stride = stride;
+    motion.kept = static_cast<std::uint32_t>(steps.size());
+    motion.bodies = static_cast<std::uint32_t>(std::min(steps.back().size(), moves.size()));
+    motion.moves.assign(moves.begin(), moves.begin() + motion.bodies);
+    begin_box(motion);
+    std::vector<Kept> kept;
+    for (std::size_t b = 0; b < motion.bodies; ++b) {
+        const auto has_come = [b](const std::vector<Pose>& poses) { return poses.size() > b; };
+        const auto first = std::ranges::find_if(steps, has_come); // until then its pose is this one
+        for (auto step = steps.begin(); step != steps.end(); ++step) {
+            Kept now = kept_of((*std::max(step, first))[b]);
+            if (step != steps.begin()) turn_near(kept.back(), now);
+            enclose(kept.emplace_back(now), motion);
+        }
+    }
+    write_numbers(kept, motion);
+    return motion;
+}
+
 Motion standing(std::span<const Pose> poses) {
     Motion motion;
     motion.kept = 1;
     motion.bodies = static_cast<std::uint32_t>(poses.size());
     motion.moves.assign(poses.size(), false);
-    motion.low.fill(std::numeric_limits<double>::infinity());
-    motion.high.fill(-std::numeric_limits<double>::infinity());
+    begin_box(motion);
     std::vector<Kept> kept;
     for (const Pose& pose : poses) enclose(kept.emplace_back(kept_of(pose)), motion);
     write_numbers(kept, motion);

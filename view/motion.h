@@ -28,6 +28,9 @@ std::uint32_t stride_for(std::uint32_t bodies, std::uint32_t steps, std::uint64_
 /// Where a body is not there, its pose is that of the nearest step in which it is. Throws InputError for a damaged
 /// file.
 Motion read_motion(recording::Reader& reader, std::uint32_t stride, const std::function<void(std::uint32_t)>& progress);
+/// Of a run whose bodies come one after another and stay: of every stride-th step from step 0 the poses of those that
+/// have come. moves: by body, of all that come.
+Motion motion_of(const std::vector<std::vector<Pose>>& steps, std::uint32_t stride, const std::vector<bool>& moves);
 /// Of bodies that stand still, in one step.
 Motion standing(std::span<const Pose> poses);
 /// What the page adds up again: each number minus that of the kept step before.

@@ -7,7 +7,6 @@
 
 #include <raycontact/error.h>
 #include <recording/replay.h>
-#include <report/colour.h>
 #include <report/svg.h>
 
 #include "page_text.h"
@@ -16,6 +15,7 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
 #include <map>
 #include <span>
 #include <stdexcept>
@@ -72,32 +72,28 @@ Json shapes_json(const std::vector<DrawnMesh>& meshes, std::uint32_t triangles, 
     return json;
 }
 
-/// As the report's pictures show it, 0xrrggbb.
+/// 0xrrggbb, from the body's index alone: the same body has the same colour in every page.
 std::uint32_t colour_of(std::size_t body, bool moves) {
-    constexpr float light = 1.5f; // a side that the sun meets at some 60 degrees
-    std::uint8_t rgb[3];
-    report::develop(light * (moves ? report::body_colour(body) : report::resting_colour()), rgb);
-    return static_cast<std::uint32_t>(rgb[0] << 16 | rgb[1] << 8 | rgb[2]);
+    if (!moves) return 0xd3d3d3;
+    constexpr std::uint32_t palette[] = {0xe48252, 0xe7c543, 0xe8dd7d, 0xafce83, 0x3dbdb2, 0x79d0da,
+                                         0x3f98cd, 0x6e74b9, 0xc187ce, 0xe391b8, 0xe8e5df, 0xd9643d};
+    // A multiplicative hash: neighbours in a grid get unlike colours, and a little lighter or darker.
+    const std::uint32_t mixed = (static_cast<std::uint32_t>(body) + 1) * 2654435769u;
+    const std::uint32_t base = palette[(mixed >> 16) % std::size(palette)], light = 237 + (mixed >> 8 & 31u); // of 256
+    std::uint32_t colour = 0;
+    for (const int bits : {16, 8, 0}) colour |= std::min((base >> bits & 255u) * light / 256, 255u) << bits;
+    return colour;
 }
 
 /// Where nothing moves at all, nothing is told from the ground.
-Json bodies_json(const recording::Reader& reader, const std::vector<bool>& moves) {
+Json bodies_json(const std::vector<recording::Body>& bodies, std::uint32_t steps, const std::vector<bool>& moves) {
     const bool still = std::find(moves.begin(), moves.end(), true) == moves.end();
     Json json = Json::array();
-    for (std::size_t b = 0; b < moves.size(); ++b) {
-        const recording::Body& body = reader.bodies()[b];
-        json.push_back(
-            {body.shape, body.first_step, std::min(body.end_step, reader.steps()), colour_of(b, still || moves[b])});
-    }
+    for (std::size_t b = 0; b < moves.size(); ++b)
+        json.push_back({bodies[b].shape, bodies[b].first_step, std::min(bodies[b].end_step, steps),
+                        colour_of(b, still || moves[b])});
     return json;
 }
-
-struct Found {
-    std::vector<LayerStep> layers;
-    std::vector<std::uint64_t> pairs, contacts; ///< by step
-    std::vector<double> depths;                 ///< of the deepest contact of each step, metres
-    std::vector<std::string> devices;
-};
 
 Found find_contacts(recording::Reader& reader, const ViewOptions& options) {
     recording::Follower follower(reader, options.settings);
@@ -109,12 +105,7 @@ Found find_contacts(recording::Reader& reader, const ViewOptions& options) {
         follower.place(i, poses);
         Scene& scene = follower.scene();
         scene.find_contacts(pairs);
-        found.pairs.push_back(scene.stats().pairs);
-        found.contacts.push_back(scene.stats().contacts);
-        found.depths.push_back(scene.stats().depth_max);
-        if (i % options.layer_every == 0) found.layers.push_back(read_layer(scene, i));
-        const std::vector<DeviceWork>& work = scene.stats().details.work;
-        for (std::size_t k = found.devices.size(); k < work.size(); ++k) found.devices.push_back(work[k].device);
+        found.add(scene, i % options.layer_every == 0);
         if (options.progress) options.progress(reader.steps() + i + 1);
     }
     return found;
@@ -187,6 +178,41 @@ std::string make_page(const std::string& title, std::string_view json) {
     return page;
 }
 
+/// What a page of bodies that move says of them.
+struct Shown {
+    std::string scene, mesh_source;
+    std::uint64_t seed = 0;
+    double dt = 0;
+    std::uint32_t steps = 0;
+    Settings settings;
+    std::vector<recording::Body> bodies;
+    std::vector<DrawnMesh> meshes;
+};
+
+DrawnMesh drawn(const Shape& shape) {
+    return {shape.name(), shape.vertices(), shape.triangles()};
+}
+
+/// found: null for a page without layers.
+View show(const Shown& shown, const Motion& motion, const Found* found, std::uint32_t triangles) {
+    View view;
+    view.standing = static_cast<std::uint32_t>(std::count(motion.moves.begin(), motion.moves.end(), false));
+    const Json json{{"scene", shown.scene},
+                    {"seed", shown.seed},
+                    {"dt", shown.dt},
+                    {"steps", shown.steps},
+                    {"method", to_string(shown.settings.method)},
+                    {"direction", to_string(shown.settings.direction)},
+                    {"meshSource", shown.mesh_source},
+                    {"bodies", bodies_json(shown.bodies, shown.steps, motion.moves)},
+                    {"standing", view.standing},
+                    {"shapes", shapes_json(shown.meshes, triangles, view.shape_bytes)},
+                    {"motion", motion_json(motion, view)},
+                    {"layers", found ? layers_json(*found, view) : Json()}};
+    view.html = make_page(shown.scene + " - RayContact", dump(json));
+    return view;
+}
+
 } // namespace
 
 std::uint32_t work_of(const recording::Reader& reader, const ViewOptions& options) {
@@ -195,28 +221,23 @@ std::uint32_t work_of(const recording::Reader& reader, const ViewOptions& option
 
 View make_view(recording::Reader& reader, const ViewOptions& options) {
     if (reader.steps() == 0) throw InputError("view: the recording has no steps; record at least one");
-    View view;
     const recording::Info& info = reader.info();
+    Shown shown{info.scene,     info.mesh_source, info.seed,       info.dt,
+                reader.steps(), options.settings, reader.bodies(), {}};
+    for (const auto& shape : reader.shapes()) shown.meshes.push_back(drawn(*shape));
     const Motion motion = read_motion(reader, std::max(options.stride, 1u), options.progress);
-    view.standing = static_cast<std::uint32_t>(std::count(motion.moves.begin(), motion.moves.end(), false));
-    const Json poses = motion_json(motion, view);
-    std::vector<DrawnMesh> meshes;
-    for (const auto& shape : reader.shapes()) meshes.push_back({shape->name(), shape->vertices(), shape->triangles()});
-    Json json{{"scene", info.scene},
-              {"seed", info.seed},
-              {"dt", info.dt},
-              {"steps", reader.steps()},
-              {"method", to_string(options.settings.method)},
-              {"direction", to_string(options.settings.direction)},
-              {"meshSource", info.mesh_source},
-              {"bodies", bodies_json(reader, motion.moves)},
-              {"standing", view.standing},
-              {"shapes", shapes_json(meshes, options.triangles, view.shape_bytes)},
-              {"motion", poses},
-              {"layers", nullptr}};
-    if (options.layer_every > 0) json["layers"] = layers_json(find_contacts(reader, options), view);
-    view.html = make_page(info.scene + " - RayContact", dump(json));
-    return view;
+    if (options.layer_every == 0) return show(shown, motion, nullptr, options.triangles);
+    const Found found = find_contacts(reader, options);
+    return show(shown, motion, &found, options.triangles);
+}
+
+View make_view(const scenes::RunLog& log, const RunView& run, const Settings& settings) {
+    constexpr std::uint32_t triangles = 200'000; // a report has more to hold than a view, and names the meshes itself
+    Shown shown{log.scene, {}, log.seed, log.dt, run.steps(), settings, {}, {}};
+    for (const auto& shape : log.shapes) shown.meshes.push_back(drawn(*shape));
+    for (std::size_t b = 0; b < run.first_steps().size(); ++b)
+        shown.bodies.push_back({.shape = log.body_shape[b], .first_step = run.first_steps()[b], .id = {}});
+    return show(shown, run.motion(log.body_moves), &run.found(), triangles);
 }
 
 View make_clash_view(const ClashFile& file, const std::string& name, const ViewOptions& options) {

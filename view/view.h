@@ -2,7 +2,9 @@
 #pragma once
 
 #include <recording/reader.h>
+#include <scenes/run_log.h>
 #include <view/clashes.h>
+#include <view/run_view.h>
 
 #include <raycontact/settings.h>
 
@@ -35,6 +37,8 @@ struct View {
 
 /// Throws InputError for a damaged recording, one without steps, or unusable settings.
 View make_view(recording::Reader& reader, const ViewOptions& options);
+/// Of a run that gathered it, for its report. The log has a step.
+View make_view(const scenes::RunLog& log, const RunView& run, const Settings& settings);
 /// Of what raycontact clash wrote: a list of its clashes, those parts red, the others faint. name: of the file.
 View make_clash_view(const ClashFile& file, const std::string& name, const ViewOptions& options);
 

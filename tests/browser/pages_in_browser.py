@@ -27,6 +27,36 @@ def check(browser, page, expected):
     assert not browser.outside_requests(), browser.outside_requests()
 
 
+def check_view_of_run(browser, page):
+    """It plays on its own to the end, and the wheel is the page's until someone clicks into it."""
+    browser.size(1280, 900)
+    browser.open(page)
+    browser.wait_for("document.readyState === 'complete'")
+    view = "document.querySelector('iframe').contentDocument"
+    browser.wait_for(f"{view}.documentElement.dataset.state")
+    state = browser.value(f"{view}.documentElement.dataset.state")
+    assert state == "ready", state
+    browser.wait_for(f"{view}.documentElement.dataset.step === '79'")
+    said = browser.value(f"{view}.getElementById('said').textContent")
+    assert said.startswith("step 79 of 80") and "contact" in said, said
+    browser.value(f"{view}.getElementById('layer-contacts').click()")
+    browser.wait_for(f"+{view}.documentElement.dataset.marks > 0")
+
+    def wheel():
+        """Whether the view took it."""
+        return browser.value(f"""(() => {{
+            const turn = new WheelEvent('wheel', {{deltaY: 100, cancelable: true}});
+            return !{view}.getElementById('stage').dispatchEvent(turn);
+        }})()""")
+
+    assert not wheel(), "the view takes the wheel of a reader who passes"
+    browser.value("document.querySelector('iframe').focus()")
+    browser.wait_for(f"{view}.hasFocus()")
+    assert wheel(), "the view does not zoom"
+    assert not browser.problems, browser.problems
+    assert not browser.outside_requests(), browser.outside_requests()
+
+
 def main(chromium, raycontact):
     with tempfile.TemporaryDirectory() as folder:
         run, paper = os.path.join(folder, "run"), os.path.join(folder, "paper")
@@ -36,6 +66,7 @@ def main(chromium, raycontact):
         browser = Browser(chromium)
         try:
             check(browser, os.path.join(run, "report.html"), ["Avalanche: 12 meshes", "Beside Bullet's GImpact"])
+            check_view_of_run(browser, os.path.join(run, "report.html"))
             page = os.path.join(paper, "report.html")
             check(browser, page, ["The paper, reproduced", "wrong_rays.avalanche", "Short version"])
             # The 3D view inside it.

@@ -4,7 +4,7 @@
 
 #include <raycontact/error.h>
 #include <recording/writer.h>
-#include <report/colour.h>
+#include <view/blob.h>
 #include <view/view.h>
 
 #include <gtest/gtest.h>
@@ -78,25 +78,28 @@ TEST(Page, HasEveryLayerStepAndCount) {
     EXPECT_EQ(data["bodies"].size(), 2u);
 }
 
-TEST(Page, BodiesHaveTheReportsColours) {
-    const Boxes boxes;
-    recording::Reader reader(boxes.file);
-    const View view = make_view(reader, {});
-    const nlohmann::json data = data_of(view.html);
+TEST(Page, BodiesHaveColoursAndTheGroundIsGrey) {
+    const Boxes boxes, once(1); // of one step, what stands still cannot be told yet
+    recording::Reader reader(boxes.file), one(once.file);
+    const View view = make_view(reader, {}), short_view = make_view(one, {});
+    const nlohmann::json bodies = data_of(view.html)["bodies"], early = data_of(short_view.html)["bodies"];
     EXPECT_EQ(view.standing, 1u);
-    EXPECT_EQ(data["standing"], 1);
-    const auto shown = [](report::Float3 colour) {
-        std::uint8_t rgb[3];
-        report::develop(1.5f * colour, rgb);
-        return rgb[0] << 16 | rgb[1] << 8 | rgb[2];
-    };
-    EXPECT_EQ(data["bodies"][0][3], shown(report::resting_colour())); // it never moves
-    EXPECT_EQ(data["bodies"][1][3], shown(report::body_colour(1)));
-    const Boxes once(1); // what stands still cannot be told yet
-    recording::Reader one(once.file);
-    const View short_view = make_view(one, {});
+    EXPECT_EQ(data_of(view.html)["standing"], 1);
     EXPECT_EQ(short_view.standing, 0u);
-    EXPECT_EQ(data_of(short_view.html)["bodies"][0][3], shown(report::body_colour(0)));
+    EXPECT_EQ(bodies[0][3], 0xd3d3d3); // it never moves
+    EXPECT_NE(early[0][3], 0xd3d3d3);
+    EXPECT_NE(bodies[1][3], early[0][3]);
+    EXPECT_EQ(bodies[1][3], early[1][3]);
+}
+
+TEST(Page, Base64OfTheStandard) { // RFC 4648, section 10
+    const auto coded = [](std::string_view text) { return base64(Bytes(text.begin(), text.end())); };
+    EXPECT_EQ(coded(""), "");
+    EXPECT_EQ(coded("f"), "Zg==");
+    EXPECT_EQ(coded("fo"), "Zm8=");
+    EXPECT_EQ(coded("foo"), "Zm9v");
+    EXPECT_EQ(coded("foobar"), "Zm9vYmFy");
+    EXPECT_EQ(coded("\xff\xfe\xfd"), "//79");
 }
 
 TEST(Page, HasTheDeepestContactOfEveryStep) {

@@ -12,7 +12,7 @@ class Camera {
       canvas.addEventListener(end, e => this.pointers.delete(e.pointerId));
     canvas.addEventListener('pointermove', e => this.drag(e));
     canvas.addEventListener('contextmenu', e => e.preventDefault());
-    canvas.addEventListener('wheel', e => { e.preventDefault(); this.zoom(Math.exp(e.deltaY * (e.deltaMode ? 0.03 : 0.001))); }, {passive: false});
+    canvas.addEventListener('wheel', e => { if (framed && !document.hasFocus()) return; e.preventDefault(); this.zoom(Math.exp(e.deltaY * (e.deltaMode ? 0.03 : 0.001))); }, {passive: false});
   }
 
   axes() {

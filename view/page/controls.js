@@ -18,6 +18,7 @@ class Controls {
     this.addLayers(recording.layers);
     for (const id of ['colour', 'clear', 'speed']) element(id).addEventListener('change', () => this.changed());
     this.readAddress();
+    if (framed) matchMedia('(prefers-reduced-motion: reduce)').matches ? this.seek(this.last) : this.play(); // a report shows the run
     window.addEventListener('hashchange', () => this.readAddress());
   }
 

@@ -22,7 +22,7 @@ new ResizeObserver(changed).observe(canvas);
 
 const finest = recording.shapes.reduce((sum, s) => sum + s.triangles, 0);
 element('about').textContent = clashes ? `${recording.scene}: ${counted(recording.bodies.length, 'part', 'parts')}, ${counted(recording.clashes.length, 'clash', 'clashes')}. Lengths are in the unit of the file.` : `${recording.scene}: ${counted(recording.bodies.length - recording.standing, 'moving body', 'moving bodies')}, ${recording.standing} standing still, ${counted(recording.shapes.length, 'shape', 'shapes')} of ${finest} triangles in all, ${counted(recording.steps, 'step', 'steps')} of ${(1000 * recording.dt).toFixed(1)} ms, method ${recording.method}, direction ${recording.direction}.`
-  + (motion.stride > 1 ? ` Every ${motion.stride}th step is here.` : '')
+  + (motion.stride > 1 ? ` One step of ${motion.stride} is here.` : '')
   + (recording.meshSource ? ` Meshes: ${recording.meshSource}` : '');
 
 function legend(names, by) {

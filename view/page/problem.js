@@ -1,4 +1,5 @@
 // A page that cannot be shown says why.
+const framed = window.parent !== window; // in a report: the wheel is the report's until someone clicks here
 const element = id => document.getElementById(id);
 const counted = (count, one, many) => `${count} ${count === 1 ? one : many}`;
 const median = values => [...values].sort((a, b) => a - b)[values.length >> 1];

@@ -138,27 +138,6 @@ TEST_F(Output, AFolderKeepsAllOrNothing) {
     EXPECT_EQ(files(), 2u);
 }
 
-TEST_F(Output, WhatAnEarlierRunLeftGoes) {
-    fs::create_directories(folder_ / "deep");
-    for (const char* name : {"deep/a-1.png", "deep/a-2.png", "deep/b-1.png", "deep/a-.txt", "deep/film"})
-        put(name, "old");
-    const auto write = [&](bool cut_short) {
-        OutFolder folder(folder_);
-        folder.supersede("deep/a-", ".png");
-        folder.supersede("deep/film", ".webp");
-        folder.claim("deep/film.webp");
-        folder.write("deep/a-2.png", "new");
-        folder.keep(cut_short);
-    };
-    write(true);
-    EXPECT_TRUE(fs::exists(folder_ / "deep/a-1.png"));
-    EXPECT_EQ(get("deep/a-2.png.cut"), "new");
-    write(false);
-    EXPECT_FALSE(fs::exists(folder_ / "deep/a-1.png"));
-    EXPECT_FALSE(fs::exists(folder_ / "deep/film.webp"));
-    EXPECT_EQ(get("deep/a-2.png") + get("deep/b-1.png") + get("deep/a-.txt"), "newoldold");
-}
-
 TEST_F(Output, CutResultsLieBesideThoseThatAreThere) {
     OutFolder first(folder_);
     first.write("one", "cut");
