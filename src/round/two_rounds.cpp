@@ -16,6 +16,8 @@ namespace {
 constexpr double beside = 0.05;
 /// Of both radii: lengths and distances that count as one; of contacts that touch later and others.
 constexpr double one_place = 1e-3, beside_of_end = 0.25;
+/// Of both radii: what touches to that.
+constexpr double in_touch = 1e-6;
 /// Cosine from which on what touches later is what is near.
 constexpr double alike = 0.9;
 /// Of both radii: axes that are nearer than this have no direction between them.
@@ -113,6 +115,29 @@ struct MovingAxes {
         return std::max(dot(way_a[0], normal), dot(way_a[1], normal))
                - std::min(dot(way_b[0], normal), dot(way_b[1], normal));
     }
+    void advance(double part) {
+        for (const std::size_t e : {0, 1}) {
+            a.end[e] += part * way_a[e], way_a[e] *= 1 - part;
+            b.end[e] += part * way_b[e], way_b[e] *= 1 - part;
+        }
+    }
+    /// Takes from the rest of the way of the one that goes farther what leads into the other: as a free uniform rod is
+    /// pushed at a place, whose other end swings. normal: from a to b.
+    void deflect(const Places& p, const Vec3& normal, const std::array<double, 2>& radii) {
+        const double into = -dot(way(p), normal);
+        if (!(into > 0)) return;
+        const auto far = [](const std::array<Vec3, 2>& ways) { return length2(ways[0]) + length2(ways[1]); };
+        const bool of_a = far(way_a) >= far(way_b);
+        const double at = of_a ? p.on_a : p.on_b, radius = radii[of_a ? 0 : 1];
+        const Vec3 along = (of_a ? a : b).along(), out = of_a ? -normal : normal;
+        const double square = length2(along), gyration2 = square / 12 + 0.4 * radius * radius;
+        const Vec3 across = square > 0 ? out - (dot(along, out) / square) * along : out;
+        const auto moved = [&](double place) {
+            return out + ((at - 0.5) * (place - 0.5) * square / gyration2) * across;
+        };
+        const double push = into / dot(moved(at), out);
+        for (const std::size_t e : {0, 1}) (of_a ? way_a : way_b)[e] += push * moved(double(e));
+    }
     /// Of two places.
     Vec3 way(const Places& p) const {
         const auto of = [](const std::array<Vec3, 2>& way, double at) { return (1 - at) * way[0] + at * way[1]; };
@@ -127,7 +152,7 @@ struct MovingAxes {
             const TwoAxes axes = at(part);
             const Vec3 between = axes.between(axes.nearest());
             const double away = length(between), gap = away - distance;
-            if (gap <= 1e-6 * distance) return part;
+            if (gap <= in_touch * distance) return part;
             const double speed = closing((1 / away) * between);
             if (!(part + gap / (speed > 0 ? speed : 0) <= 1)) return std::nullopt;
             part += gap / speed;
@@ -191,40 +216,47 @@ void two_round_contacts(const MovingRound& a, const MovingRound& b, double reach
         if (main_counts) add(2, nearest, normal, distance, false);
     }
     if (!ahead) return;
-    // What touches later: the axes, and each end by itself, since what is near at one end says nothing of the other.
-    const auto add_later = [&](int place, const MovingAxes& of, const auto& places_of) {
-        if (of.at(0).away(of.at(0).nearest()) <= both) return;
-        const std::optional<double> touch = of.touch(both);
-        if (!touch) return;
-        const TwoAxes then = of.at(*touch);
-        const Places there = then.nearest(), p = places_of(there);
-        const double far = then.away(there);
-        if (!(far > 0)) return;
-        const Vec3 at_touch = (1 / far) * then.between(there), on_a = moving.a.at(p.on_a);
+    // What touches later: the axes, and each end by itself, since what is near at one end says nothing of the other;
+    // going on along what it touched first.
+    MovingAxes rest = moving;
+    const double touching = both * (1 + 10 * in_touch);
+    constexpr int most_turns = 4;
+    for (int turn = 0; turn < most_turns; ++turn) {
+        int place = 0;
+        double first = 2;
+        Places there{};
+        const auto consider = [&](int of_place, const MovingAxes& of, const auto& places_of) {
+            if (of.at(0).away(of.at(0).nearest()) <= touching) return;
+            const std::optional<double> touch = of.touch(both);
+            if (!touch || *touch >= first) return;
+            first = *touch;
+            place = of_place;
+            there = places_of(of.at(first).nearest());
+        };
+        consider(2, rest, [](const Places& p) { return p; });
+        for (const std::size_t e : {0, 1}) {
+            const double end = double(e);
+            const auto of_end = [e](const std::array<Vec3, 2>& v) { return std::array<Vec3, 2>{v[e], v[e]}; };
+            const auto on_a = [&](const Places& p) { return Places{end, p.on_b}; };
+            const auto on_b = [&](const Places& p) { return Places{p.on_a, end}; };
+            if (length2(rest.a.along()) > 0)
+                consider(int(e), {{of_end(rest.a.end)}, rest.b, of_end(rest.way_a), rest.way_b}, on_a);
+            if (length2(rest.b.along()) > 0)
+                consider(3 + int(e), {rest.a, {of_end(rest.b.end)}, rest.way_a, of_end(rest.way_b)}, on_b);
+        }
+        if (first > 1) return;
+        rest.advance(first);
+        const Vec3 between = rest.at(0).between(there);
+        if (!(length2(between) > 0)) return;
+        const Vec3 at_touch = unit(between), own_place = moving.a.at(there.on_a);
+        rest.deflect(there, at_touch, {a.round.radius, b.round.radius});
         const bool is_told = std::ranges::any_of(out, [&](const RoundContact& c) {
             const Vec3 own = c.point - origin + (a.round.radius + c.distance) * c.normal;
-            return dot(at_touch, -c.normal) >= alike && length(own - on_a) <= beside_of_end * both;
+            return dot(at_touch, -c.normal) >= alike && length(own - own_place) <= beside_of_end * both;
         });
-        // Two convex bodies pass each other on one side: on another one they would be only if nothing stopped them.
-        const bool is_beside = !out.empty() && dot(at_touch, -out[0].normal) < alike;
-        if (is_told || is_beside) return;
-        add(coming + place, p, at_touch, std::max(dot(now.between(p), at_touch) - both, 0.0), true);
-    };
-    const auto as_they_are = [](const Places& p) { return p; };
-    add_later(2, moving, as_they_are);
-    for (const std::size_t e : {0, 1}) {
-        const double end = double(e);
-        const auto of_point = [e](const std::array<Vec3, 2>& v) { return std::array<Vec3, 2>{v[e], v[e]}; };
-        if (length2(moving.a.along()) > 0)
-            add_later(int(e), {{of_point(moving.a.end)}, moving.b, of_point(moving.way_a), moving.way_b},
-                      [&](const Places& p) {
-                          return Places{end, p.on_b};
-                      });
-        if (length2(moving.b.along()) > 0)
-            add_later(3 + int(e), {moving.a, {of_point(moving.b.end)}, moving.way_a, of_point(moving.way_b)},
-                      [&](const Places& p) {
-                          return Places{p.on_a, end};
-                      });
+        if (!is_told)
+            add(coming + 6 * turn + place, there, at_touch, std::max(dot(now.between(there), at_touch) - both, 0.0),
+                true);
     }
 }
 
