@@ -259,25 +259,24 @@ void measure_preparing(int rounds) {
 
 /// A prepared shape that was saved, beside one that is made of its mesh.
 void measure_saving(int rounds) {
-    std::printf("triangles  Shape::make  prepare()   save()   load()   prepared: save()   load()   (ms)      bytes\n");
+    std::printf("triangles  Shape::make   save()   load()      bytes  prepare()   save()   load()      bytes   (ms)\n");
     for (const char* kind : {"sphere", "knot"})
         for (const std::uint32_t triangles : {20'000u, 300'000u}) {
             const Mesh mesh = scenes::scene_model(kind, triangles).mesh;
             std::vector<double> make, prepare, save, load, save_all, load_all;
-            std::size_t size = 0;
+            std::vector<std::byte> plain, bytes;
             for (int i = 0; i < rounds; ++i) {
                 std::shared_ptr<const Shape> shape;
-                std::vector<std::byte> bytes;
                 make.push_back(milliseconds_of([&] { shape = Shape::make(mesh); }));
-                save.push_back(milliseconds_of([&] { bytes = shape->save(); }));
-                load.push_back(milliseconds_of([&] { Shape::load(bytes); }));
+                save.push_back(milliseconds_of([&] { plain = shape->save(); }));
+                load.push_back(milliseconds_of([&] { Shape::load(plain); }));
                 prepare.push_back(milliseconds_of([&] { shape->prepare(); }));
                 save_all.push_back(milliseconds_of([&] { bytes = shape->save(); }));
                 load_all.push_back(milliseconds_of([&] { Shape::load(bytes); }));
-                size = bytes.size();
             }
-            std::printf("%9zu  %11.1f %10.1f %8.1f %8.1f %18.1f %8.1f %17zu  %s\n", mesh.triangles.size(), median(make),
-                        median(prepare), median(save), median(load), median(save_all), median(load_all), size, kind);
+            std::printf("%9zu  %11.1f %8.1f %8.1f %10zu %10.1f %8.1f %8.1f %10zu   %s\n", mesh.triangles.size(),
+                        median(make), median(save), median(load), plain.size(), median(prepare), median(save_all),
+                        median(load_all), bytes.size(), kind);
             std::fflush(stdout);
         }
 }
