@@ -3,6 +3,7 @@
 // than the next the dispatch takes that meets it, in a world that runs and in one that begins with it, one query of two
 // copies, the same with their files read, and what is made beside later steps.
 // Milliseconds, medians, by turns.
+// With --saving: what a shape takes to be made, prepared, saved and loaded.
 // With --floor or --sheet: a static mesh of about N triangles that has been in a running world for a while meets its
 // first body: how long that step takes, with --ahead after add_body(), and the memory.
 #include "bench/commands.h"
@@ -256,6 +257,30 @@ void measure_preparing(int rounds) {
     }
 }
 
+/// A prepared shape that was saved, beside one that is made of its mesh.
+void measure_saving(int rounds) {
+    std::printf("triangles  Shape::make   save()   load()      bytes  prepare()   save()   load()      bytes   (ms)\n");
+    for (const char* kind : {"sphere", "knot"})
+        for (const std::uint32_t triangles : {20'000u, 300'000u}) {
+            const Mesh mesh = scenes::scene_model(kind, triangles).mesh;
+            std::vector<double> make, prepare, save, load, save_all, load_all;
+            std::vector<std::byte> plain, bytes;
+            for (int i = 0; i < rounds; ++i) {
+                std::shared_ptr<const Shape> shape;
+                make.push_back(milliseconds_of([&] { shape = Shape::make(mesh); }));
+                save.push_back(milliseconds_of([&] { plain = shape->save(); }));
+                load.push_back(milliseconds_of([&] { Shape::load(plain); }));
+                prepare.push_back(milliseconds_of([&] { shape->prepare(); }));
+                save_all.push_back(milliseconds_of([&] { bytes = shape->save(); }));
+                load_all.push_back(milliseconds_of([&] { Shape::load(bytes); }));
+            }
+            std::printf("%9zu  %11.1f %8.1f %8.1f %10zu %10.1f %8.1f %8.1f %10zu   %s\n", mesh.triangles.size(),
+                        median(make), median(save), median(load), plain.size(), median(prepare), median(save_all),
+                        median(load_all), bytes.size(), kind);
+            std::fflush(stdout);
+        }
+}
+
 } // namespace
 
 void add_new_shape(CLI::App& app) {
@@ -264,7 +289,7 @@ void add_new_shape(CLI::App& app) {
     struct Options {
         int rounds = 5;
         std::optional<std::uint32_t> floor, sheet;
-        bool ahead = false, preparing = false;
+        bool ahead = false, preparing = false, saving = false;
     };
     auto o = std::make_shared<Options>();
     add_number(*command, "--rounds", o->rounds, "by turns; figures are medians", 1, 1000);
@@ -274,9 +299,13 @@ void add_new_shape(CLI::App& app) {
     add_number(*command, "--sheet", o->sheet, "the same for open ground", 1u, 10'000'000u)->excludes(floor);
     command->add_flag("--preparing", o->preparing, "instead, prepare_mesh() of closed meshes and of some with holes")
         ->excludes(floor);
+    command->add_flag("--saving", o->saving, "instead, what a shape takes to be made, prepared, saved and loaded")
+        ->excludes(floor);
     command->add_flag("--ahead", o->ahead, "with --floor or --sheet: after add_body()");
     command->callback([o] {
-        if (o->preparing)
+        if (o->saving)
+            measure_saving(o->rounds);
+        else if (o->preparing)
             measure_preparing(o->rounds);
         else if (o->sheet)
             measure_floor(sheet(*o->sheet), o->ahead);

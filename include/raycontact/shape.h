@@ -50,8 +50,8 @@ public:
     /// prepare() was done, by whomever.
     bool is_prepared() const noexcept;
 
-    /// The shape as bytes, with what prepare() made if it did: 45 to 85 a triangle. They are for load() by this version
-    /// of the library on this kind of machine (order of bytes), as a cache: keep the mesh, too.
+    /// The shape as bytes, 45 a triangle; 80 to 200 with what prepare() made, if it did. They are a cache for load()
+    /// by this version of the library on this kind of machine (order of bytes): keep the mesh, too.
     std::vector<std::byte> save() const;
 
     const std::string& name() const noexcept;  ///< the mesh's
