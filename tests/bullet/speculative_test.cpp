@@ -360,8 +360,8 @@ TEST(Speculative, AFastBallOrCapsuleDoesNotPassASheetOrAMeshABall) {
                     body.setLinearVelocity(btVector3(btScalar(0.3 * speed), 0, btScalar(-speed)));
                     w.steps(static_cast<int>(60 * 2.5 / speed) + 3);
                     const bool passed = body.getWorldTransform().getOrigin().z() < 0;
-                    passed_without += passed && !settings.speculative.value_or(true);
-                    EXPECT_FALSE(passed && settings.speculative.value_or(true))
+                    passed_without += passed && settings.speculative == Speculative::off;
+                    EXPECT_FALSE(passed && settings.speculative != Speculative::off)
                         << speed << ", flight " << i << ", " << body.getCollisionShape()->getName();
                 }
             }
@@ -402,7 +402,7 @@ TEST(Speculative, ABallIsStoppedByWhatIsInItsWayAlone) {
 TEST(Speculative, QueriesFindWhatTouches) {
     const btTransform tilted(btQuaternion(btVector3(1, 0, 0), btScalar(0.3)));
     Settings asked;
-    asked.speculative = true;
+    asked.speculative = Speculative::on;
     for (const Settings& settings : {by_default, asked}) {
         TestWorld w(settings);
         btRigidBody& ground = w.add_mesh(Shape::make(box_mesh(8, 8, 1)), 0, tilted * at(0, 0, -0.5));
