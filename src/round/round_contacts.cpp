@@ -5,6 +5,7 @@
 #include "round/first_touches.h"
 
 #include <algorithm>
+#include <map>
 #include <utility>
 
 namespace raycontact {
@@ -58,12 +59,10 @@ void round_contacts(const Round& round, const Pose& pose, const std::optional<Po
         return c;
     };
     // Of those of an obstacle, the how manyth of its place.
-    std::vector<std::pair<std::size_t, int>> counted;
+    std::map<std::pair<std::size_t, int>, int> counted;
     const auto place = [&](const Spot& spot) {
         const int first = place_of(spot.part, spot.normal, 0);
-        const auto number = std::ranges::count(counted, std::pair(spot.obstacle, first));
-        counted.emplace_back(spot.obstacle, first);
-        return place_of(spot.part, spot.normal, static_cast<int>(number));
+        return place_of(spot.part, spot.normal, counted[{spot.obstacle, first}]++);
     };
     std::vector<char> passed(near.size(), 0), told;
     if (next) {

@@ -18,8 +18,8 @@ constexpr double beside = 0.05;
 constexpr double one_place = 1e-3, beside_of_end = 0.25;
 /// Of both radii: what touches to that.
 constexpr double in_touch = 1e-6;
-/// Cosine from which on what touches later is what is near.
-constexpr double alike = 0.9;
+/// Cosines from which on what touches later is what is near, and is on the same side.
+constexpr double alike = 0.9, one_side = 0.5;
 /// Of both radii: axes that are nearer than this have no direction between them.
 constexpr double no_way = 1e-12;
 
@@ -220,13 +220,13 @@ void two_round_contacts(const MovingRound& a, const MovingRound& b, double reach
     // going on along what it touched first.
     MovingAxes rest = moving;
     const double touching = both * (1 + 10 * in_touch);
-    constexpr int most_turns = 4;
-    for (int turn = 0; turn < most_turns; ++turn) {
+    std::array<bool, 5> done{};
+    for (;;) {
         int place = 0;
         double first = 2;
         Places there{};
         const auto consider = [&](int of_place, const MovingAxes& of, const auto& places_of) {
-            if (of.at(0).away(of.at(0).nearest()) <= touching) return;
+            if (done[std::size_t(of_place)] || of.at(0).away(of.at(0).nearest()) <= touching) return;
             const std::optional<double> touch = of.touch(both);
             if (!touch || *touch >= first) return;
             first = *touch;
@@ -245,6 +245,7 @@ void two_round_contacts(const MovingRound& a, const MovingRound& b, double reach
                 consider(3 + int(e), {rest.a, {of_end(rest.b.end)}, rest.way_a, of_end(rest.way_b)}, on_b);
         }
         if (first > 1) return;
+        done[std::size_t(place)] = true;
         rest.advance(first);
         const Vec3 between = rest.at(0).between(there);
         if (!(length2(between) > 0)) return;
@@ -254,9 +255,10 @@ void two_round_contacts(const MovingRound& a, const MovingRound& b, double reach
             const Vec3 own = c.point - origin + (a.round.radius + c.distance) * c.normal;
             return dot(at_touch, -c.normal) >= alike && length(own - own_place) <= beside_of_end * both;
         });
-        if (!is_told)
-            add(coming + 6 * turn + place, there, at_touch, std::max(dot(now.between(there), at_touch) - both, 0.0),
-                true);
+        // Two convex bodies are on one side of each other for a step.
+        const bool is_elsewhere = !out.empty() && dot(at_touch, -out[0].normal) < one_side;
+        if (!is_told && !is_elsewhere)
+            add(coming + place, there, at_touch, std::max(dot(now.between(there), at_touch) - both, 0.0), true);
     }
 }
 
