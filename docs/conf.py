@@ -18,8 +18,8 @@ html_use_index = False
 html_show_copyright = False
 
 navigation = {
-    "Use": "getting-started concepts program clash assembly-motion python planning engine bullet mujoco queries speculative"
-    " scene-files",
+    "Use": "getting-started concepts program clash assembly-motion python planning engine bullet mujoco queries"
+    " speculative scene-files",
     "Rely on": "conventions limits performance",
     "How it works": "internals/pipeline internals/shapes internals/certified internals/edges internals/speculative"
     " internals/patches internals/devices internals/dialect internals/recording internals/real-meshes",

@@ -9,6 +9,7 @@
 #include <raycontact/query.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -280,8 +281,26 @@ void Surroundings::finish(const Site& site, const Facet& facet, unsigned on, con
     spot.name = facet.name;
 }
 
+// Of the vertices as steps see them, not of the file's, which queries take. found: where the facet is then.
+std::optional<Surroundings::Entry> Surroundings::nearest_facet(std::size_t site, const Vec3& p, double from,
+                                                               std::vector<Facet>& found) const {
+    const Facets& surface = sites_[site].obstacle->surface;
+    for (double around = 2 * from; around < 8 * (surface.size() + length(p) + from); around *= 2) {
+        found.clear();
+        const Vec3 more{around, around, around};
+        surface.near(p - more, p + more, found);
+        std::optional<Entry> best;
+        for (const Facet& f : found)
+            if (const Nearest n = nearest(f, p); n.away2 > 0 && (!best || n.away2 < best->away2))
+                best = {n.away2, site, &f, n};
+        if (best && best->away2 <= around * around) return best;
+    }
+    return std::nullopt;
+}
+
 void Surroundings::of_end(int end, double part, double limit, std::vector<std::vector<Spot>>& out) const {
     static thread_local std::vector<Entry> entries;
+    static thread_local std::vector<Facet> beyond;
     entries.clear();
     for (std::size_t k = 0; k < sites_.size(); ++k) {
         const Vec3 centre = axis(k, end, part);
@@ -309,16 +328,17 @@ void Surroundings::of_end(int end, double part, double limit, std::vector<std::v
             // So deep inside that no surface is in reach.
             const Vec3 centre = axis(k, end, part);
             if (!surface.shape() || sites_[k].obstacle->two_sided || !contains(*surface.shape(), centre)) continue;
-            const auto way_out = closest_point(*surface.shape(), {}, centre);
-            if (!way_out || !(way_out->distance > 0)) continue;
+            const std::optional<Entry> way_out = nearest_facet(k, centre, limit, beyond);
+            if (!way_out) continue;
+            const double away = std::sqrt(way_out->away2);
             spots.push_back({.obstacle = k,
                              .part = end,
                              .at = double(end),
-                             .point = way_out->point,
-                             .normal = (1 / way_out->distance) * (way_out->point - centre),
-                             .away = -way_out->distance,
+                             .point = way_out->nearest.point,
+                             .normal = (1 / away) * (way_out->nearest.point - centre),
+                             .away = -away,
                              .flat = true,
-                             .triangle = way_out->triangle});
+                             .triangle = surface.shape()->triangle_index()[way_out->facet->triangle]});
         } else if (spots[0].away < 0) { // the nearest comes first
             spots.resize(1);
         } else { // faces seen from behind belong to the far side of something thin

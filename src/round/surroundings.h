@@ -4,6 +4,7 @@
 #include "round/round_contacts.h"
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -67,6 +68,7 @@ private:
         const Facet* facet;
         Nearest nearest;
     };
+    std::optional<Entry> nearest_facet(std::size_t site, const Vec3& p, double from, std::vector<Facet>& found) const;
     Vec3 axis(std::size_t site, double at, double part) const;
     Vec3 seen_from(std::size_t other, std::size_t site, const Vec3& point, double at, double part) const;
     /// Metres within which a facet is beside a point of the obstacle.

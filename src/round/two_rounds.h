@@ -18,7 +18,6 @@ struct MovingRound {
 /// Where two balls or capsules are nearest, as round_contacts() has it with b as the obstacle: one place, or both ends
 /// of the stretch along which two capsules lie beside each other (places 0 and 1; else 2). If both are expected
 /// somewhere, what touches on the way there, too: the axes, and each end by itself; ends go straight.
-RAYCONTACT_API void two_round_contacts(const MovingRound& a, const MovingRound& b, double reach,
-                                       std::vector<RoundContact>& out);
+void two_round_contacts(const MovingRound& a, const MovingRound& b, double reach, std::vector<RoundContact>& out);
 
 } // namespace raycontact

@@ -109,7 +109,7 @@ TEST_P(RecorderOf, BodiesThatComeAndGoReplayWithTheSameHash) {
     recorder.finish();
     EXPECT_EQ(recorder.steps(), 40u);
     expect_same_contacts(file, row.hash.hex(), GetParam(), 40);
-    EXPECT_EQ(recording::Reader(file.path()).shapes().size(), 1u); // however many bodies have it
+    EXPECT_EQ(recording::Reader(file.path()).shapes().size(), 2u); // however many bodies have them
     EXPECT_EQ(recording::Reader(file.path()).info().scene, "row");
 }
 
