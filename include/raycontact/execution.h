@@ -38,7 +38,7 @@ struct Execution {
     std::uint32_t threads = 0; ///< of the host; 0: one per core; 1: no others than the caller's
     /// Whose threads these are: `threads` says how many run at once. What makes shapes faster beside the steps
     /// (Shape::prepare()) has a thread of its own all the same; call it before if there is to be none.
-    TaskSystem tasks;
+    TaskSystem tasks{};
     Schedule schedule = Schedule::balanced; ///< of pairs, among several devices; `auto` measures nothing with `counted`
     /// Accept a device that rounds differently: its contacts may differ from those of all other devices.
     bool inexact = false;

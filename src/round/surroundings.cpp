@@ -285,7 +285,8 @@ void Surroundings::finish(const Site& site, const Facet& facet, unsigned on, con
 std::optional<Surroundings::Entry> Surroundings::nearest_facet(std::size_t site, const Vec3& p, double from,
                                                                std::vector<Facet>& found) const {
     const Facets& surface = sites_[site].obstacle->surface;
-    for (double around = 2 * from; around < 8 * (surface.size() + length(p) + from); around *= 2) {
+    const double first = std::max(2 * from, 1e-3 * surface.size());
+    for (double around = first; around < 8 * (surface.size() + length(p) + first); around *= 2) {
         found.clear();
         const Vec3 more{around, around, around};
         surface.near(p - more, p + more, found);

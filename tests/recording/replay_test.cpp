@@ -173,7 +173,7 @@ TEST(Replay, WhatMustAgree) {
         };
         EXPECT_TRUE(must_agree(recorded, recorded));
         EXPECT_TRUE(of_paper(&PaperOptions::caster, Caster::basic));
-        EXPECT_TRUE(agrees(&Settings::execution, Execution{.threads = 3, .tasks = {}}));
+        EXPECT_TRUE(agrees(&Settings::execution, Execution{.threads = 3}));
         EXPECT_FALSE(agrees(&Settings::direction, Direction::ray));
         EXPECT_FALSE(agrees(&Settings::direction, Direction::weighted));
         EXPECT_FALSE(agrees(&Settings::features, Features::vertices));
