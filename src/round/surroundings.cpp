@@ -98,6 +98,12 @@ private:
     double apart_;
     std::multimap<double, std::size_t> by_x_;
 };
+std::vector<SpotList> lists_of(std::vector<std::vector<Spot>>& spots, double limit) {
+    std::vector<SpotList> lists;
+    lists.reserve(spots.size());
+    for (std::vector<Spot>& own : spots) lists.emplace_back(own, limit);
+    return lists;
+}
 
 } // namespace
 
@@ -312,8 +318,7 @@ void Surroundings::of_end(int end, double part, double limit, std::vector<std::v
         }
     }
     std::ranges::stable_sort(entries, {}, &Entry::away2);
-    std::vector<SpotList> lists;
-    for (std::vector<Spot>& spots : out) lists.emplace_back(spots, limit);
+    std::vector<SpotList> lists = lists_of(out, limit);
     for (const Entry& e : entries) {
         if (!out[e.site].empty() && out[e.site].front().away < 0) continue; // it is inside: the nearest is all
         Spot spot{.obstacle = e.site, .part = end, .at = double(end), .point = e.nearest.point};
@@ -383,8 +388,7 @@ void Surroundings::of_side(double part, double limit, std::vector<std::vector<Sp
         }
     }
     std::ranges::stable_sort(candidates, {}, [](const Candidate& c) { return c.entry.away2; });
-    std::vector<SpotList> lists;
-    for (std::vector<Spot>& spots : out) lists.emplace_back(spots, limit);
+    std::vector<SpotList> lists = lists_of(out, limit);
     for (const auto& [e, at] : candidates) {
         Spot spot{.obstacle = e.site, .part = 2, .at = at, .point = e.nearest.point, .away = std::sqrt(e.away2)};
         const double rounded = rounding * limit * limit;
