@@ -4,6 +4,7 @@
 #include "mesh/vector.h"
 #include "round/axis.h"
 #include "round/lines.h"
+#include "round/rod.h"
 #include "shape/angle.h"
 
 #include <raycontact/query.h>
@@ -163,22 +164,14 @@ void Surroundings::deflect(std::span<const Spot> spots) {
         for (const Spot& spot : spots) deflect(spot);
 }
 
-// As a free uniform rod of the same length is pushed there: the other end swings.
 void Surroundings::deflect(const Spot& spot) {
     const double into = dot(way(spot.obstacle, spot.at), spot.normal);
     if (into >= 0) return;
     const Site& site = sites_[spot.obstacle];
-    const Vec3 along = site.from[1] - site.from[0];
-    const double square = length2(along), gyration2 = square / 12 + 0.4 * round_.radius * round_.radius;
-    const double along_normal = square > 0 ? dot(along, spot.normal) / square : 0;
-    const Vec3 across = spot.normal - along_normal * along;
-    // How far a place on the axis goes for each unit that the middle goes.
-    const auto moved = [&](double at) {
-        return spot.normal + ((spot.at - 0.5) * (at - 0.5) * square / gyration2) * across;
-    };
-    const double push = -into / dot(moved(spot.at), spot.normal);
+    const RodPush push(site.from[1] - site.from[0], round_.radius, spot.at, spot.normal);
+    const double metres = push.needed(-into);
     for (int e = 0; e < 2; ++e) {
-        const Vec3 back = rotated(site.pose.rotation, push * moved(e));
+        const Vec3 back = rotated(site.pose.rotation, metres * push.moved(e));
         for (Site& s : sites_) s.by[e] = s.by[e] + rotated_back(s.pose.rotation, back);
     }
 }
@@ -192,17 +185,11 @@ void Surroundings::advance(double part) {
 }
 
 bool Surroundings::is_least(std::size_t obstacle, const Vec3& point, double at, double part) const {
-    const double away2 = length2(axis(obstacle, at, part) - point), near = beside(obstacle);
-    for (std::size_t k = 0; k < sites_.size(); ++k) {
-        const Vec3 p = seen_from(k, obstacle, point, at, part), centre = axis(k, at, part);
-        if (any_beside(sites_[k], p, near, [&](const Facet& f) {
-                return nearest(f, centre).away2 < away2 * (1 - rounding) && nearest(f, p).away2 <= near * near;
-            }))
-            return false;
-    }
-    return true;
+    const Spot spot{.obstacle = obstacle, .at = at, .point = point};
+    return !is_nearer_there(spot, part, length2(axis(obstacle, at, part) - point) * (1 - rounding));
 }
 
+// Whether a facet that goes on beside a spot is nearer to the axis than this, squared.
 bool Surroundings::is_nearer_there(const Spot& spot, double part, double than2) const {
     const double near = beside(spot.obstacle);
     for (std::size_t k = 0; k < sites_.size(); ++k) {

@@ -3,6 +3,7 @@
 
 #include "mesh/vector.h"
 #include "round/lines.h"
+#include "round/rod.h"
 
 #include <algorithm>
 #include <array>
@@ -121,8 +122,7 @@ struct MovingAxes {
             b.end[e] += part * way_b[e], way_b[e] *= 1 - part;
         }
     }
-    /// Takes from the rest of the way of the one that goes farther what leads into the other: as a free uniform rod is
-    /// pushed at a place, whose other end swings. normal: from a to b.
+    /// Takes from the rest of the way of the one that goes farther what leads into the other. normal: from a to b.
     void deflect(const Places& p, const Vec3& normal, const std::array<double, 2>& radii) {
         const double into = -dot(way(p), normal);
         if (!(into > 0)) return;
@@ -130,13 +130,9 @@ struct MovingAxes {
         const bool of_a = far(way_a) >= far(way_b);
         const double at = of_a ? p.on_a : p.on_b, radius = radii[of_a ? 0 : 1];
         const Vec3 along = (of_a ? a : b).along(), out = of_a ? -normal : normal;
-        const double square = length2(along), gyration2 = square / 12 + 0.4 * radius * radius;
-        const Vec3 across = square > 0 ? out - (dot(along, out) / square) * along : out;
-        const auto moved = [&](double place) {
-            return out + ((at - 0.5) * (place - 0.5) * square / gyration2) * across;
-        };
-        const double push = into / dot(moved(at), out);
-        for (const std::size_t e : {0, 1}) (of_a ? way_a : way_b)[e] += push * moved(double(e));
+        const RodPush push(along, radius, at, out);
+        const double metres = push.needed(into);
+        for (const std::size_t e : {0, 1}) (of_a ? way_a : way_b)[e] += metres * push.moved(double(e));
     }
     /// Of two places.
     Vec3 way(const Places& p) const {

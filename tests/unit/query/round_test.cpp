@@ -10,6 +10,7 @@
 #include "brute_force.h"
 #include "reference/meshes.h"
 #include "reference/random.h"
+#include "unit/query/placed.h"
 
 #include <gtest/gtest.h>
 
@@ -27,14 +28,6 @@ namespace {
 using namespace reference;
 using ShapePtr = std::shared_ptr<const Shape>;
 
-Pose at(const Vec3& place) {
-    return {.translation = place};
-}
-Pose anywhere(Random& random, double spread) {
-    Pose pose = random.rotation();
-    pose.translation = spread * random.in_ball();
-    return pose;
-}
 double apart(const Vec3& p, const Vec3& q) {
     return length(p - q);
 }
